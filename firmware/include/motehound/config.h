@@ -1,0 +1,37 @@
+/* Every capacity of the library, each with its default, its meaning and what it costs.
+ *
+ * Override by defining the name on the compiler's command line (CMake: -DMOTEHOUND_DEFINITIONS="MH_REPORTS_MAX=128"). All code that
+ * shares a structure with the library must be compiled with the same values. */
+#ifndef MOTEHOUND_CONFIG_H
+#define MOTEHOUND_CONFIG_H
+
+/* Measurements of one sampling instant that a cluster head can hold. Costs 32 bytes each at the head, nothing at a
+ * sensor node. When it is full the measurement with the smallest increment gives way, and is counted. */
+#ifndef MH_REPORTS_MAX
+#define MH_REPORTS_MAX 64
+#endif
+
+/* Past samples that a sensor node keeps, for differencing and for answering a late request. 8 bytes each. */
+#ifndef MH_SENSOR_HISTORY
+#define MH_SENSOR_HISTORY 4
+#endif
+
+/* Largest frame, in bytes, check sum included: the largest PSDU of IEEE 802.15.4. */
+#define MH_FRAME_MAX 127
+
+/* A message that has been relayed this often is dropped and counted: no path is longer, so it is going in a circle. */
+#ifndef MH_HOPS_MAX
+#define MH_HOPS_MAX 64
+#endif
+
+#if MH_REPORTS_MAX < 4 || MH_REPORTS_MAX > 4096
+#error "MH_REPORTS_MAX must be 4 to 4096: least squares needs four reports, and the table is searched linearly"
+#endif
+#if MH_SENSOR_HISTORY < 2 || MH_SENSOR_HISTORY > 16
+#error "MH_SENSOR_HISTORY must be 2 to 16: a difference needs two samples"
+#endif
+#if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
+#error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
+#endif
+
+#endif

@@ -1,0 +1,48 @@
+/* Places, in the integers of a sensor node and in the reals of a cluster head. */
+#ifndef MOTEHOUND_GEOMETRY_H
+#define MOTEHOUND_GEOMETRY_H
+
+#include "motehound/real.h"
+
+#include <stdint.h>
+
+/* A place in the field's own frame, in millimetres: what a node knows of itself and what frames carry. Each
+ * coordinate within +- 1e9 (1,000 km), so that differences fit in 32 bits. */
+struct mh_place {
+    int32_t x_mm, y_mm, z_mm;
+};
+
+/* A point or vector in the plane, in metres, relative to an origin near the work. */
+struct mh_vec2 {
+    mh_real x, y;
+};
+
+/* Symmetric 2 x 2 matrix. */
+struct mh_sym2 {
+    mh_real xx, xy, yy;
+};
+
+/* A rectangle of the field, in millimetres, borders included. */
+struct mh_region {
+    int32_t x_min_mm, x_max_mm, y_min_mm, y_max_mm;
+};
+
+/* True if the horizontal distance between a and b is at most radius_mm. Integers only. */
+static inline bool mh_place_within(const struct mh_place *a, const struct mh_place *b, uint32_t radius_mm)
+{
+    int64_t dx = (int64_t)a->x_mm - b->x_mm;
+    int64_t dy = (int64_t)a->y_mm - b->y_mm;
+    return dx * dx + dy * dy <= (int64_t)radius_mm * radius_mm;
+}
+
+/* place - origin in metres, horizontal part. */
+static inline struct mh_vec2 mh_place_relative(const struct mh_place *place, const struct mh_place *origin)
+{
+    struct mh_vec2 v = {(mh_real)(place->x_mm - origin->x_mm) * 0.001f, (mh_real)(place->y_mm - origin->y_mm) * 0.001f};
+    return v;
+}
+
+/* origin + offset, rounded to the millimetre; z is the origin's. `offset` finite and within +- 1e6 m. */
+struct mh_place mh_place_from_offset(const struct mh_place *origin, struct mh_vec2 offset);
+
+#endif

@@ -1,0 +1,48 @@
+/* The cluster head: gathers the measurements of one sampling instant, then steps its tracker. */
+#ifndef MOTEHOUND_HEAD_H
+#define MOTEHOUND_HEAD_H
+
+#include "motehound/config.h"
+#include "motehound/tracker.h"
+
+struct mh_head_config {
+    const struct mh_tracker *tracker;
+    const void *tracker_config; /* the tracker's own structure */
+    void *tracker_state;        /* tracker->state_size bytes */
+    mh_tick epoch;              /* a sampling instant; the others are whole intervals from it */
+    mh_tick interval;           /* between sampling instants */
+    mh_tick window;             /* measurements are waited for this long after their instant; below interval */
+};
+
+struct mh_head_counters {
+    uint32_t measurements; /* taken */
+    uint32_t late;         /* came after their instant was closed */
+    uint32_t repeated;     /* same node, target and instant once more */
+    uint32_t overflowed;   /* gave way because MH_REPORTS_MAX was reached */
+    uint32_t estimates;    /* positions given */
+};
+
+struct mh_head {
+    const struct mh_head_config *config;
+    struct mh_measurement measurements[MH_REPORTS_MAX];
+    uint16_t count;
+    mh_tick instant; /* the sampling instant being gathered */
+    bool tracking;   /* the last step gave a position */
+    struct mh_head_counters counters;
+};
+
+/* Begin gathering at the first instant at or after `now`. Errors: MH_ERR_ARGUMENT, or what the tracker's init returns. */
+enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *config, mh_tick now);
+
+/* Take one measurement into the instant being gathered. Errors: MH_ERR_TIME (late, or of a later instant),
+ * MH_ERR_REPEATED, MH_ERR_CAPACITY (something gave way: the smallest increment of all). Each is counted. */
+enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *measurement);
+
+/* When the instant being gathered is to be closed. */
+mh_tick mh_head_deadline(const struct mh_head *head);
+
+/* Close it: order the measurements by time, then node, step the tracker, go on to the next instant.
+ * Errors: MH_NONE (no position at this instant). */
+enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate);
+
+#endif

@@ -1,0 +1,23 @@
+/* What a sensor node contributes at one sampling instant, self-contained: the head needs no table of nodes. */
+#ifndef MOTEHOUND_MEASUREMENT_H
+#define MOTEHOUND_MEASUREMENT_H
+
+#include "motehound/geometry.h"
+#include "motehound/real.h"
+#include "motehound/ticks.h"
+
+typedef uint32_t mh_node_id;
+
+enum { MH_MEASUREMENT_HAS_INCREMENT = 1 }; /* the sample one interval before was really taken */
+
+struct mh_measurement {
+    mh_node_id node;
+    struct mh_place place; /* of the node */
+    mh_tick time;          /* when the sample was taken */
+    mh_q20 value;          /* the sample: concentration in g/m2, range in m, ... */
+    mh_q20 increment;      /* value - value one interval before, Eq. (8)/(13) of Luo; 0 unless flagged */
+    uint8_t flags;         /* MH_MEASUREMENT_* */
+    uint8_t target;        /* which target was measured where a sensor can tell, else 0 */
+};
+
+#endif

@@ -1,0 +1,79 @@
+/* The mote: a state machine without I/O that joins a sensor, a protocol and, on a cluster head, a tracker.
+ *
+ * Its owner feeds it three events, a reading, a frame and an alarm, each with the time; it answers through struct
+ * mh_port. It reads no clock, owns no thread, allocates nothing and touches no global, so the same compiled code runs on a board, in
+ * a test and as one of many thousands inside the simulator. Not re-entrant for one mote; different motes are independent. */
+#ifndef MOTEHOUND_MOTE_H
+#define MOTEHOUND_MOTE_H
+
+#include "motehound/head.h"
+#include "motehound/protocol.h"
+#include "motehound/sensor.h"
+
+/* What the mote asks of its owner. None of these may call back into the mote. */
+struct mh_port {
+    /* Put a frame on the air, for one neighbour or for all (MH_BROADCAST). `frame` is valid during the call only. */
+    void (*transmit)(void *context, mh_node_id destination, const uint8_t *frame, size_t length);
+    /* Call mh_mote_alarm at `time` (at once if that is past); replaces the alarm set before. */
+    void (*set_alarm)(void *context, mh_tick time);
+    /* The head has an estimate. Valid during the call only. */
+    void (*report)(void *context, const struct mh_estimate *estimate);
+    /* The radio may sleep (true) or must listen (false). NULL if the owner does not care. */
+    void (*sleep)(void *context, bool may_sleep);
+};
+
+struct mh_mote_config {
+    mh_node_id id; /* below MH_BROADCAST, unique in the network */
+    struct mh_place place;
+    const struct mh_sensor_config *sensor;   /* NULL on a mote without a sensor */
+    const struct mh_head_config *head;       /* NULL on a mote that does not compute */
+    const struct mh_protocol *protocol;
+    const void *protocol_config;
+    void *protocol_state;                    /* protocol->state_size bytes */
+    struct mh_head *head_state;              /* with head */
+};
+
+struct mh_mote_counters {
+    uint32_t readings;           /* taken */
+    uint32_t readings_refused;   /* out of range, out of time */
+    uint32_t readings_repeated;
+    uint32_t reports;            /* measurements handed to the protocol ... */
+    uint32_t reports_asked;      /* ... of these, only because a head asked */
+    uint32_t reports_no_route;   /* ... of these, lost for want of a next hop */
+    uint32_t frames_sent;
+    uint32_t frames_received;    /* sound ones */
+    uint32_t frames_corrupt;
+    uint32_t frames_unknown;
+};
+
+/* Memory of a sensor node: sizeof(struct mh_mote) + protocol->state_size, at most 256 bytes on an ATmega128. */
+struct mh_mote {
+    const struct mh_mote_config *config;
+    const struct mh_port *port;
+    void *port_context;
+    struct mh_protocol_node node;
+    struct mh_sensor sensor;
+    bool tracking;              /* the network follows a track */
+    bool asked;                 /* a request for asked_time is open */
+    mh_tick asked_time;
+    struct mh_interest asked_interest;
+    mh_tick protocol_alarm;
+    bool protocol_alarm_set;
+    struct mh_mote_counters counters;
+};
+
+/* Come up. `config`, all it points to, and `port` outlive the mote. Sets the first alarm; may transmit.
+ * Errors: MH_ERR_ARGUMENT, or what the parts' own init functions return. */
+enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *config, const struct mh_port *port,
+                            void *port_context, mh_tick now);
+
+/* The sensor has sampled. Errors: those of mh_sensor_take (each counted; the mote goes on), MH_ERR_ARGUMENT (no sensor). */
+enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct mh_reading *reading);
+
+/* A frame came in. Errors: those of mh_wire_decode (each counted; the mote goes on). */
+enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length);
+
+/* The time asked for with set_alarm has come. Early and repeated calls do no harm. */
+void mh_mote_alarm(struct mh_mote *mote, mh_tick now);
+
+#endif

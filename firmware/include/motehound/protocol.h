@@ -1,0 +1,57 @@
+/* A protocol answers "who finds out?": it carries measurements to the node that computes, and that node's requests back.
+ * It knows nothing of how a position is computed.
+ *
+ * Like a tracker it is one table of functions over a state that its owner allocates. */
+#ifndef MOTEHOUND_PROTOCOL_H
+#define MOTEHOUND_PROTOCOL_H
+
+#include "motehound/measurement.h"
+#include "motehound/status.h"
+#include "motehound/tracker.h"
+#include "motehound/wire.h"
+
+/* What a protocol asks of the mote that runs it. `context` is the mote's own. */
+struct mh_protocol_port {
+    /* Send to one neighbour, or to all in range (MH_BROADCAST). */
+    void (*send)(void *context, mh_node_id destination, const struct mh_message *message);
+    /* Call timer() at `time`; a new call replaces the earlier one. */
+    void (*set_timer)(void *context, mh_tick time);
+    /* A measurement has arrived at this mote, which computes. */
+    void (*deliver)(void *context, mh_tick now, const struct mh_measurement *measurement);
+    /* A head asks the nodes in `interest` for the sample of instant `time`. */
+    void (*asked)(void *context, mh_tick now, const struct mh_interest *interest, mh_tick time);
+    /* The head has begun (true) or lost (false) a track. */
+    void (*tracking)(void *context, bool tracking);
+};
+
+/* The mote as its protocol sees it. Outlives the protocol's state. */
+struct mh_protocol_node {
+    mh_node_id id;
+    struct mh_place place;
+    bool is_head; /* this mote computes */
+    const struct mh_protocol_port *port;
+    void *context;
+};
+
+struct mh_protocol {
+    const char *name;
+    size_t state_size;  /* bytes of the state that init() fills */
+    size_t config_size; /* bytes of the configuration that init() reads */
+
+    /* Errors: MH_ERR_ARGUMENT (a configuration value outside the range its header gives). */
+    enum mh_status (*init)(void *state, const void *config, const struct mh_protocol_node *node);
+    /* The mote is up. */
+    void (*start)(void *state, mh_tick now);
+    /* A sound message came in. */
+    void (*message)(void *state, mh_tick now, const struct mh_message *message);
+    /* The time set with set_timer has come. */
+    void (*timer)(void *state, mh_tick now);
+    /* Hand on what this node measured. Errors: MH_ERR_NO_ROUTE. */
+    enum mh_status (*publish)(void *state, mh_tick now, const struct mh_measurement *measurement);
+    /* Head: ask the nodes in `interest` for the sample of instant `time`. */
+    enum mh_status (*ask)(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time);
+    /* Head: tell the network that a track has begun or is lost. */
+    void (*tell_tracking)(void *state, mh_tick now, bool tracking);
+};
+
+#endif

@@ -1,0 +1,18 @@
+/* Time on a mote: unsigned ticks of 1 ms that wrap after 49.7 days. Only differences below 24.8 days have a meaning. */
+#ifndef MOTEHOUND_TICKS_H
+#define MOTEHOUND_TICKS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef uint32_t mh_tick;
+
+#define MH_TICKS_PER_S 1000u
+
+/* later - earlier in ticks, negative when `later` is in fact earlier; right across the wrap. */
+static inline int32_t mh_ticks_between(mh_tick earlier, mh_tick later) { return (int32_t)(later - earlier); }
+
+/* True if a is strictly before b. */
+static inline bool mh_tick_before(mh_tick a, mh_tick b) { return mh_ticks_between(a, b) > 0; }
+
+#endif

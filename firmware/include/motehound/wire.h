@@ -1,0 +1,47 @@
+/* Messages to frames and back.
+ *
+ * A frame is an LCM-encoded message of lcm_types/mh_radio.lcm (8 bytes of fingerprint, then the fields, big-endian)
+ * followed by the 16-bit frame check sequence of IEEE 802.15.4 (ITU-T CRC-16, least significant byte first), at most
+ * MH_FRAME_MAX bytes in all. */
+#ifndef MOTEHOUND_WIRE_H
+#define MOTEHOUND_WIRE_H
+
+#include "motehound/config.h"
+#include "motehound/measurement.h"
+#include "motehound/status.h"
+
+#include "mh_beacon_t.h"
+#include "mh_report_t.h"
+#include "mh_request_t.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define MH_BROADCAST ((mh_node_id)0xFFFFFFFFu)
+
+enum mh_message_kind { MH_MESSAGE_BEACON, MH_MESSAGE_REPORT, MH_MESSAGE_REQUEST, MH_MESSAGE_KINDS };
+
+struct mh_message {
+    enum mh_message_kind kind;
+    union {
+        mh_beacon_t beacon;
+        mh_report_t report;
+        mh_request_t request;
+    } as;
+};
+
+/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (unknown kind). */
+enum mh_status mh_wire_encode(const struct mh_message *message, uint8_t *frame, size_t *length);
+
+/* frame[0 .. length) -> message. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields that no sender
+ * writes: more than MH_HOPS_MAX hops, negative radius), MH_ERR_UNKNOWN (sound, but of a type this build does not know). */
+enum mh_status mh_wire_decode(const uint8_t *frame, size_t length, struct mh_message *message);
+
+/* ITU-T CRC-16 as IEEE 802.15.4 uses it: polynomial x^16 + x^12 + x^5 + 1, reflected, initial value 0. */
+uint16_t mh_wire_fcs(const uint8_t *bytes, size_t length);
+
+/* A measurement as the report its node `sender` puts on the air (hops 0), and back. */
+void mh_report_from_measurement(const struct mh_measurement *measurement, mh_report_t *report);
+void mh_report_to_measurement(const mh_report_t *report, struct mh_measurement *measurement);
+
+#endif

@@ -1,0 +1,34 @@
+#include "motehound/geometry.h"
+#include "port.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void offset_round_trip(void)
+{
+    const struct mh_place origin = {900000000, -900000000, 5};
+    const struct mh_vec2 offset = {-12.345f, 6.789f};
+    const struct mh_place place = mh_place_from_offset(&origin, offset);
+    TEST_ASSERT_EQUAL_INT32(899987655, place.x_mm);
+    TEST_ASSERT_EQUAL_INT32(-899993211, place.y_mm);
+    const struct mh_vec2 back = mh_place_relative(&place, &origin);
+    TEST_ASSERT_FLOAT_WITHIN(0.0006f, offset.x, back.x);
+    TEST_ASSERT_FLOAT_WITHIN(0.0006f, offset.y, back.y);
+}
+
+static void within_includes_the_border(void)
+{
+    const struct mh_place a = {0, 0, 0}, b = {3000, 4000, 99999};
+    TEST_ASSERT_TRUE(mh_place_within(&a, &b, 5000));
+    TEST_ASSERT_FALSE(mh_place_within(&a, &b, 4999));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(offset_round_trip);
+    RUN_TEST(within_includes_the_border);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}
