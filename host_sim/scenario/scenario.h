@@ -1,0 +1,81 @@
+/* A scenario: everything that one simulation run is made of, as the YAML file gives it. Units stand in the names.
+ *
+ * The key of a member in a file or in --set is its path: scenario.source.speed_mps is `source.speed_mps`. */
+#ifndef MOTEHOUND_SIM_SCENARIO_H
+#define MOTEHOUND_SIM_SCENARIO_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum path_kind {
+    PATH_WAYPOINTS, /* straight legs between points, each leg at its own speed factor */
+    PATH_ARCS,      /* two circular arcs of 90 degrees, turning left then right, from the first point to the second */
+    PATH_STILL      /* stays at the first point for duration_s */
+};
+
+struct waypoint {
+    double x_m, y_m;
+    double speed_factor; /* of the leg that ends here, times source.speed_mps; ignored for the first point */
+};
+
+enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_FILE };
+
+struct scenario {
+    char *name;        /* of the experiment */
+    char *description; /* one sentence for `motehound list` */
+    struct {
+        double width_m, height_m; /* the field is [0, width] x [0, height] */
+    } field;
+    struct {
+        enum path_kind path;
+        struct waypoint *points;
+        unsigned points_count;
+        double speed_mps;
+        double duration_s;        /* of PATH_STILL; 0: the path's own */
+        double release_gps;       /* mean release rate mu */
+        double release_variation; /* mu(t) = release (1 + variation sin(2 pi t / release_period)), 0 to 0.95 */
+        double release_period_s;
+        double diffusion_m2ps;    /* D of the field (the tracker has its own) */
+    } source;
+    struct {
+        int64_t nodes;
+        enum layout_kind layout;
+        char *file;               /* nodes.csv of LAYOUT_FILE, relative to the scenario */
+        double sink_x_m, sink_y_m;
+        char *protocol;           /* `collection` */
+    } network;
+    struct {
+        double interval_s;     /* between samples, T */
+        double relative_noise; /* sd as a share of the reading */
+        double additive_noise; /* sd, g/m2 */
+        int64_t adc_bits;      /* 0: an ideal converter */
+        double full_scale;     /* of the converter, g/m2 */
+        double loss;           /* probability that a reading never comes */
+        double outage_start_s, outage_s; /* no reading of any node comes in this time; 0, 0 for none */
+    } sensor;
+    struct {
+        double range_m;       /* unit disc */
+        double delay_s;       /* of one hop, besides the air time */
+        double bitrate_bps;   /* gives the air time */
+        double loss;          /* probability that a frame is lost, each receiver independently */
+    } radio;
+    struct {
+        char *name;           /* diffusion, luo or range */
+        double diffusion_m2ps;
+        double chi;
+        double release_gps;   /* diffusion: expected release rate */
+        double additive_sd, relative_sd; /* diffusion: assumed noise */
+        double forgetting;    /* luo */
+        bool nonlinear;       /* luo */
+        double range_sd_m, acceleration_sd_mps2, height_m; /* range */
+        double window_s;      /* reports are waited for this long after a sampling instant; 0: half the interval */
+    } tracker;
+    struct {
+        int64_t skip_first;   /* estimates of each track left out of the error metrics */
+        double lost_m;        /* a track is lost when its error exceeds this ... */
+        int64_t lost_samples; /* ... in so many successive samples */
+    } metrics;
+};
+
+#endif

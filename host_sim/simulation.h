@@ -1,0 +1,45 @@
+/* One run: builds the world and the motes of a scenario, runs them in simulated time and tells an observer what happens. */
+#ifndef MOTEHOUND_SIM_SIMULATION_H
+#define MOTEHOUND_SIM_SIMULATION_H
+
+#include "motehound/mote.h"
+#include "scenario/scenario.h"
+
+#include <signal.h>
+
+/* Where the source truly is. */
+struct truth {
+    double time_s, x_m, y_m;
+    bool present; /* it is on its way: it has begun and not ended */
+};
+
+/* What a run tells. Any of the functions may be NULL. Called in the order of simulated time. */
+struct observer {
+    void *context;
+    void (*node)(void *context, mh_node_id id, const struct mh_place *place);
+    /* At every sampling instant. */
+    void (*truth)(void *context, const struct truth *truth);
+    /* The head has a position; coordinates are metres in the field's frame. `at_arrival`: truth at estimate->time - age. */
+    void (*estimate)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
+                     const struct truth *at_arrival);
+    /* A frame goes on the air. */
+    void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes, size_t length);
+};
+
+/* Totals of a run, beside what the observer was told. */
+struct simulation_counters {
+    uint64_t events;
+    uint64_t samples;                            /* sampling instants while the source was present */
+    uint64_t frames_sent[MH_MESSAGE_KINDS];      /* by kind */
+    uint64_t frames_received, frames_lost;
+    struct mh_mote_counters motes;               /* summed over all motes */
+    struct mh_head_counters head;
+};
+
+/* Run `scenario` with `seed`. Deterministic: the same scenario, seed and library give the same calls. `stop` (may be NULL) is
+ * looked at between events: when it becomes nonzero the run ends early. Returns 0, or -1 with one line in `error`: a
+ * deployment file that cannot be read, a run that was stopped, no memory. Thread-safe: runs share nothing. */
+int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
+                   const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
+
+#endif
