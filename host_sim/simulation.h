@@ -3,6 +3,7 @@
 #define MOTEHOUND_SIM_SIMULATION_H
 
 #include "motehound/mote.h"
+#include "scenario/recording.h"
 #include "scenario/scenario.h"
 
 #include <signal.h>
@@ -41,5 +42,12 @@ struct simulation_counters {
  * deployment file that cannot be read, a run that was stopped, no memory. Thread-safe: runs share nothing. */
 int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
                    const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
+
+/* Feed a recording through the same motes: its nodes and readings instead of the scenario's field, deployment and sensor.
+ * scenario->sensor.interval_s is the sampling interval. The truth, where the recording has one, is interpolated linearly between
+ * its rows and present from the first to the last; without one, `present` is always false. As simulation_run otherwise. */
+int simulation_replay(const struct scenario *scenario, const struct recording *recording, uint64_t seed,
+                      const struct observer *observer, const volatile sig_atomic_t *stop,
+                      struct simulation_counters *counters, char *error, size_t error_size);
 
 #endif

@@ -1,0 +1,61 @@
+/* A recording of a real network, from CSV: nodes (`node,x_m,y_m[,z_m]`), readings (`time_s,node,value[,target][,bearing_rad]`)
+ * and, optionally, the truth (`time_s,x_m,y_m[,target]`).
+ *
+ * The first line names the columns, in any order. Errors are one line: file, line, column and what was expected. Refused are
+ * NaN and infinity, numbers outside their range, an unknown or a duplicate node, time going backwards, a missing or an
+ * unknown column, fewer than four nodes, a file without rows. Lines may end in LF or CRLF; empty lines are skipped. */
+#ifndef MOTEHOUND_SIM_RECORDING_H
+#define MOTEHOUND_SIM_RECORDING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct recorded_node {
+    uint32_t id;          /* below 2^32 - 1 */
+    double x_m, y_m, z_m; /* each within +- 1e6 */
+};
+
+struct recorded_reading {
+    double time_s;
+    size_t node;        /* index into nodes */
+    double value;       /* -2047.99 to 2047.99: what a mote's Q11.20 holds */
+    double bearing_rad; /* 0 without the column */
+    uint8_t target;     /* 0 without the column */
+};
+
+struct recorded_truth {
+    double time_s, x_m, y_m;
+    uint8_t target;
+};
+
+/* In the order of the files, so by time. */
+struct recording {
+    struct recorded_node *nodes;
+    size_t node_count;
+    struct recorded_reading *readings;
+    size_t reading_count;
+    struct recorded_truth *truths; /* NULL and 0 without a truth file */
+    size_t truth_count;
+    double interval_s; /* median spacing of the readings of one node and target, rounded to 1 ms */
+};
+
+/* Each fills its part of `recording`, which begins as all zero bytes, from a file's text in memory; nodes first. `name` stands
+ * for the file in errors. Cost: O(n log nodes). Returns 0, or -1 with one line in `error`. */
+int recording_parse_nodes(const char *text, size_t length, const char *name, struct recording *recording, char *error,
+                          size_t error_size);
+int recording_parse_readings(const char *text, size_t length, const char *name, struct recording *recording, char *error,
+                             size_t error_size);
+int recording_parse_truth(const char *text, size_t length, const char *name, struct recording *recording, char *error,
+                          size_t error_size);
+
+/* The three from files; `truth_path` may be NULL. Returns 0, or -1 with one line in `error` and nothing to free. */
+int recording_load(const char *nodes_path, const char *readings_path, const char *truth_path, struct recording *recording,
+                   char *error, size_t error_size);
+
+/* Only nodes.csv, as network.file wants it. */
+int recording_load_nodes(const char *nodes_path, struct recording *recording, char *error, size_t error_size);
+
+void recording_free(struct recording *recording);
+
+#endif
