@@ -11,7 +11,7 @@
 /* Where the source truly is. */
 struct truth {
     double time_s, x_m, y_m;
-    bool present; /* it is on its way: it has begun and not ended */
+    bool present; /* it is on its way (it has begun and not ended); else x_m = y_m = 0 */
 };
 
 /* What a run tells. Any of the functions may be NULL. Called in the order of simulated time. */
@@ -20,7 +20,8 @@ struct observer {
     void (*node)(void *context, mh_node_id id, const struct mh_place *place);
     /* At every sampling instant. */
     void (*truth)(void *context, const struct truth *truth);
-    /* The head has a position; coordinates are metres in the field's frame. `at_arrival`: truth at estimate->time - age. */
+    /* The head has a position, told at time_s. `at_time`: truth at the sampling instant estimate->time, whose time in
+     * seconds is at_time->time_s. `at_arrival`: truth at that instant less the estimate's age. Neither is NULL. */
     void (*estimate)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
                      const struct truth *at_arrival);
     /* A frame goes on the air. */
@@ -44,7 +45,8 @@ int simulation_run(const struct scenario *scenario, uint64_t seed, const struct 
                    const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
 
 /* Feed a recording through the same motes: its nodes and readings instead of the scenario's field, deployment and sensor.
- * scenario->sensor.interval_s is the sampling interval. The truth, where the recording has one, is interpolated linearly between
+ * scenario->sensor.interval_s is the sampling interval (0: recording->interval_s); sampling instants are the first reading's time and
+ * whole intervals from it. Times that the observer hears are the recording's. Every node is one hop from the sink. The truth, where the recording has one, is interpolated linearly between
  * its rows and present from the first to the last; without one, `present` is always false. As simulation_run otherwise. */
 int simulation_replay(const struct scenario *scenario, const struct recording *recording, uint64_t seed,
                       const struct observer *observer, const volatile sig_atomic_t *stop,

@@ -1,0 +1,35 @@
+/* Where the nodes stand. */
+#ifndef MOTEHOUND_SIM_DEPLOYMENT_H
+#define MOTEHOUND_SIM_DEPLOYMENT_H
+
+#include "scenario/recording.h"
+#include "scenario/scenario.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Ordered by id, each id once. */
+struct deployment {
+    struct recorded_node *nodes;
+    size_t count;
+};
+
+/* Lay out the nodes of scenario->network; ids are 0, 1, 2 ... but for LAYOUT_FILE, which brings its own.
+ *
+ * uniform: node i = (width u_2i, height u_2i+1), u from the SplitMix64 stream of `seed`.
+ * r2: node i = (width, height) * frac(1/2 + (i + 1 + 1000 seed) * (0.7548776662466927, 0.5698402909980532)), Roberts' R2 sequence.
+ * grid: cell-centred, row by row. The number of columns divides the number of nodes and gives the squarest cells: 32 x 40 for 1,280
+ *   in a square. Where no divisor makes them squarer than 2 : 1, the last row has fewer nodes, evenly spread.
+ * file: the nodes of scenario->network.file, sorted.
+ *
+ * Returns 0, or -1 with one line in `error` (a file that cannot be used, no memory) and nothing to free. */
+int deployment_make(struct deployment *deployment, const struct scenario *scenario, uint64_t seed, char *error,
+                    size_t error_size);
+
+/* A copy of `nodes`, sorted by id. Returns as deployment_make. */
+int deployment_copy(struct deployment *deployment, const struct recorded_node *nodes, size_t count, char *error,
+                    size_t error_size);
+
+void deployment_free(struct deployment *deployment);
+
+#endif
