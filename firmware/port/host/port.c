@@ -1,8 +1,15 @@
+/* The host as a board: a program with standard output and an exit status. */
 #include "port.h"
+
 #include <stdio.h>
 #include <stdlib.h>
+
 void port_putc(int c) { putchar(c); }
+
 void port_puts(const char *s) { fputs(s, stdout); }
-void port_exit(int c) { exit(c); }
-uint32_t port_count_start(void) { return 0; }
-uint32_t port_count_stop(uint32_t t0) { (void)t0; return 0; }
+
+void port_exit(int status) { exit(status); }
+
+void port_stack_paint(void) {}
+
+uint32_t port_stack_used(void) { return 0; }

@@ -1,0 +1,42 @@
+/* AVR with a UART0: console by polling, start-up from avr-libc.
+ *
+ * "sleep" with interrupts off never ends on the chip, and is where simavr stops; the exit status is in r24. */
+#include "port.h"
+
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
+void port_putc(int c)
+{
+    UCSR0B = _BV(TXEN0);
+    while (!(UCSR0A & _BV(UDRE0))) {}
+    UDR0 = (uint8_t)c;
+}
+
+void port_puts(const char *s)
+{
+    while (*s) {
+        port_putc(*s++);
+    }
+}
+
+void port_exit(int status)
+{
+    cli();
+    for (;;) {
+        __asm__ volatile("mov r24, %A0\n\tsleep" ::"r"(status) : "r24");
+    }
+}
+
+extern uint8_t __heap_start[]; /* the end of the variables; there is no heap */
+
+#define STACK_POINTER() ((uint8_t *)SP)
+#define STACK_LIMIT __heap_start
+#include "stack_paint.h"
+
+/* an interrupt that nobody asked for */
+ISR(BADISR_vect)
+{
+    port_puts("processor fault\n");
+    port_exit(PORT_FAULT);
+}
