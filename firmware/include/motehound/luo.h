@@ -1,19 +1,50 @@
 /* The tracker `luo`: Algorithm 1 of Luo, Chai and Yang, "Mobile diffusion source tracking in wireless sensor networks".
  *
  * One pre-estimate of position and arrival time a sampling instant by bound-constrained least squares, Eq. (10), or optionally the
- * nonlinear problem (9) started from it, then a Sage-Husa filter on the sequence of positions (Appendix 2). */
+ * nonlinear problem (9) started from it, then a Sage-Husa filter on the sequence of positions (Appendix 2).
+ *
+ * Measurements are concentrations. Until the first position every node with a value above chi takes part, afterwards every node with
+ * an increment, Eq. (13), of at least chi; a measurement without MH_MEASUREMENT_HAS_INCREMENT then has no part. step() gives
+ * MH_NONE where fewer than MH_PUFF_SAMPLES_MIN take part, where their nodes lie on one line, and after the end.
+ *
+ * What an estimate holds: `raw` the pre-estimate, `age` the time from the arrival at the position (tau) to `time`, `position` the
+ * filtered position, `velocity` the last one known, `flags` STARTED, FILTERED, AGE_LOW and AGE_HIGH. `covariance` is all zero: the
+ * filter's variance holds neither the error of the velocity nor the lag of the method, which is most of the error. `origin` is the
+ * node with the largest concentration at the first position, for the whole track; mh_real resolves 1 mm 10 km from it.
+ * predict() moves the position on with the velocity, from tau, Eq. (11). interest() does not exist: the method never asks. */
 #ifndef MOTEHOUND_LUO_H
 #define MOTEHOUND_LUO_H
 
+#include "motehound/sage_husa.h"
 #include "motehound/tracker.h"
 
 struct mh_luo_config {
-    mh_real diffusion_m2ps; /* D, > 0; nominal 1 */
-    mh_real chi;            /* selection threshold on concentration, g/m2, >= 0; nominal 0.2 */
-    mh_real forgetting;     /* b of the Sage-Husa weight, 0 < b < 1; nominal 0.97 */
-    bool nonlinear;         /* solve Eq. (9), started from the answer of (10); nominal false */
-    bool stop_outside;      /* end for good once the track has left `region` after having been well inside; nominal false */
-    struct mh_region region; /* used with stop_outside only */
+    mh_real diffusion_m2ps;            /* D, 1e-6 to 1e3; nominal 1 */
+    mh_real chi;                       /* selection threshold on concentration, g/m2, 0 to 2000; nominal 0.2 */
+    mh_real forgetting;                /* b of the Sage-Husa weight, 0 < b < 1; nominal 0.97 */
+    struct mh_sage_husa_config filter; /* start values and floors, m2; nominal: mh_sage_husa_config_default */
+    bool nonlinear;                    /* solve Eq. (9), started from the answer of (10); nominal false */
+    bool stop_outside; /* end for good once the track has left `region` after having been well inside; nominal false */
+    struct mh_region region; /* used with stop_outside only; nominal 80 m x 80 m from the origin of the field */
+    int32_t inside_mm;       /* "well inside": this far from every border, 0 to 1e9; nominal 5000 */
+};
+
+/* The state, in the header so that it can be allocated statically; its members are the tracker's own. */
+struct mh_luo {
+    struct mh_luo_config config;
+    mh_real interval_s;
+    mh_q20 threshold; /* chi */
+    uint32_t count;   /* n: positions so far, saturating */
+    mh_tick time;     /* of the last step */
+    uint32_t since;   /* ticks from the last position (before the first: from the first step) to `time`, saturating */
+    bool stepped;     /* `time` is set */
+    bool armed;       /* has been well inside the region */
+    bool ended;       /* has left it */
+    struct mh_place origin;
+    struct mh_sage_husa x, y; /* their estimates: the filtered position */
+    mh_real age;              /* of the last pre-estimate at its sampling instant */
+    struct mh_vec2 raw[2];    /* the last pre-estimate and the one before */
+    struct mh_vec2 velocity;
 };
 
 extern const struct mh_tracker mh_tracker_luo;

@@ -1,0 +1,48 @@
+/* Linear least squares, min |A z - b|, for up to four unknowns, with bounds on the last one.
+ *
+ * The rows of A and b are rotated one by one (Givens) into the triangular factor R z = d of A, so memory does not grow with their
+ * number and the normal equations, which would square the condition number, are never formed.
+ *
+ * Bounds: with the last unknown fixed, the other rows of R z = d are the least-squares problem of the unknowns that remain, and what
+ * is left is a parabola in the last unknown. So the exact bounded minimiser is the free last unknown, put on the bound
+ * that it violates, followed by back substitution; nothing iterates.
+ *
+ * Cost: one row of n unknowns takes n square roots, n divisions and about 2 n (n + 3) multiplications; a solution n divisions. */
+#ifndef MOTEHOUND_LEAST_SQUARES_H
+#define MOTEHOUND_LEAST_SQUARES_H
+
+#include "motehound/real.h"
+#include "motehound/status.h"
+
+#define MH_LEAST_SQUARES_UNKNOWNS 4
+
+/* A column whose part independent of the columns before it is a smaller share than this is taken as dependent. */
+#define MH_LEAST_SQUARES_RANK 1e-5f
+
+/* Entries of A and b are at most this in size, so that no sum overflows. */
+#define MH_LEAST_SQUARES_ENTRY_MAX 1e15f
+
+struct mh_least_squares {
+    uint8_t unknowns;
+    uint16_t rows;                                                       /* taken so far, saturating */
+    mh_real r[MH_LEAST_SQUARES_UNKNOWNS][MH_LEAST_SQUARES_UNKNOWNS + 1]; /* upper triangle R; column `unknowns`: d */
+    mh_real residual;                                                    /* |A z - b| at the free minimiser */
+};
+
+/* Which bound the answer lies on. */
+enum mh_bound { MH_BOUND_LOW = -1, MH_BOUND_NONE = 0, MH_BOUND_HIGH = 1 };
+
+/* Begin with no rows. `unknowns`: 1 to MH_LEAST_SQUARES_UNKNOWNS. */
+void mh_least_squares_begin(struct mh_least_squares *problem, uint8_t unknowns);
+
+/* Take one equation row . z = b; `row` has one entry an unknown. Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (an entry above
+ * MH_LEAST_SQUARES_ENTRY_MAX). */
+enum mh_status mh_least_squares_add(struct mh_least_squares *problem, const mh_real *row, mh_real b);
+
+/* The minimiser z with low <= z[last] <= high; `bound` says whether a bound is active (a free minimiser that lies just on one is
+ * free). If only the last unknown is undetermined it is put on `high`. Errors: MH_ERR_ARGUMENT (low > high, or NaN), MH_ERR_TOO_FEW
+ * (fewer rows than unknowns), MH_ERR_SINGULAR (the other unknowns are not determined). */
+enum mh_status mh_least_squares_solve(const struct mh_least_squares *problem, mh_real low, mh_real high, mh_real *z,
+                                      enum mh_bound *bound);
+
+#endif

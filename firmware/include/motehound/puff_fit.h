@@ -1,0 +1,60 @@
+/* The puff behind a set of concentrations of one instant (Luo, Chai and Yang): position, age and mass from at least four of them.
+ *
+ * Two ways. The linear fit, Eq. (10), takes logarithms and the difference of every equation with a reference node's, which leaves a
+ * linear least-squares problem for position and age under 0 <= age <= age_max; it is solved exactly. The nonlinear fit,
+ * Eq. (9), least squares of the concentrations themselves under the same bound, is iterated from the linear answer.
+ * Neither keeps the concentrations: they are fed one by one, for the nonlinear fit once a pass, so memory does not grow with them.
+ *
+ *     struct mh_puff_linear linear;
+ *     mh_puff_linear_begin(&linear, diffusion, &samples[largest]);
+ *     for (k = 0; k < count; k++) mh_puff_linear_add(&linear, &samples[k]);
+ *     mh_puff_linear_solve(&linear, age_max, &answer);
+ *
+ *     struct mh_puff_nonlinear nonlinear;
+ *     mh_puff_nonlinear_begin(&nonlinear, diffusion, &answer.puff, age_max);
+ *     do {
+ *         for (k = 0; k < count; k++) mh_puff_nonlinear_add(&nonlinear, &samples[k]);
+ *     } while (mh_puff_nonlinear_advance(&nonlinear, &answer) == MH_NONE);
+ *
+ * Positions are in metres relative to an origin within 2e6 m. Errors leave the fit as it was. */
+#ifndef MOTEHOUND_PUFF_FIT_H
+#define MOTEHOUND_PUFF_FIT_H
+
+#include "motehound/least_squares.h"
+#include "motehound/puff.h"
+
+/* Fewest concentrations that determine a puff's position, age and mass. */
+#define MH_PUFF_SAMPLES_MIN 4
+
+struct mh_puff_sample {
+    struct mh_vec2 position; /* of the node */
+    mh_real concentration;   /* g/m2, > 0 */
+};
+
+struct mh_puff_answer {
+    struct mh_puff puff;
+    enum mh_bound bound; /* of the age: low (0), high (age_max) or none active */
+};
+
+/* Eq. (10). */
+struct mh_puff_linear {
+    mh_real diffusion;
+    struct mh_puff_sample reference;
+    struct mh_least_squares equations; /* unknowns: position relative to the reference, age */
+};
+
+/* Begin. `diffusion` in m2/s, > 0. `reference`: one of the samples, best the one with the largest concentration, whose logarithm has the
+ * smallest relative error. Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (diffusion or concentration not positive). */
+enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusion,
+                                    const struct mh_puff_sample *reference);
+
+/* Take one sample, in any order. The reference itself may come too: its equation 0 = 0 changes nothing but the count.
+ * Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (concentration not positive). */
+enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_puff_sample *sample);
+
+/* The exact minimiser. The mass is the one that gives the reference its concentration, 0 where the age is 0. Where the samples
+ * determine the position for a given age but not the age, the age is age_max. Errors: MH_ERR_ARGUMENT (age_max < 0 or NaN),
+ * MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN, the reference included), MH_ERR_SINGULAR (nodes on one line). */
+enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real age_max, struct mh_puff_answer *answer);
+
+#endif
