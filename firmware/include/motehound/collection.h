@@ -1,21 +1,55 @@
 /* Collection to a sink: every measurement travels hop by hop up a tree that the sink's beacons build.
  *
- * Beacons flood outwards from the sink. A node takes as parent the sender with the fewest hops, and relays the beacon
- * after a short pseudo-random wait unless it has meanwhile heard `suppress_after` others relay it with no more hops than its
- * own would carry: so the number of relays depends on the area, not on how many nodes stand in it (counter-based suppression, Ni et
- * al., "The broadcast storm problem", 1999). Requests travel from the head towards a place: of all that hear one,
- * the node nearest to the centre waits least and relays, the others hear that and stay silent (contention-based forwarding,
- * Fuessler et al., 2003). */
+ * Beacons flood outwards from the sink, round after round, and say whether it follows a track; when that changes a new round begins
+ * at once. A node takes as parent the sender with the fewest hops of the newest round, and relays the beacon after a short
+ * pseudo-random wait unless it has meanwhile heard `suppress_after` others relay it with no more hops than its own would carry:
+ * so the number of relays depends on the area, not on how many nodes stand in it (counter-based suppression, Ni et al., "The
+ * broadcast storm problem", 1999). A node that two rounds have missed broadcasts a beacon of no sink; its neighbours answer
+ * with theirs.
+ *
+ * Requests travel from the head towards a place: of all that hear one, the node nearest to the centre waits least and relays,
+ * the others hear that and stay silent (contention-based forwarding, Fuessler et al., 2003), until one broadcast covers the
+ * whole radius. A radius that no single broadcast covers is flooded with suppression, inside the radius only. Where no node
+ * is nearer to the centre than the last relay, the request ends.
+ *
+ * Several sinks divide the field: each node belongs to the one with the fewest hops. Every mote relays, so every radio
+ * listens all the time. Acknowledgements are the radio's business: a unicast frame that it loses is lost. */
 #ifndef MOTEHOUND_COLLECTION_H
 #define MOTEHOUND_COLLECTION_H
 
 #include "motehound/protocol.h"
 
 struct mh_collection_config {
-    mh_tick beacon_period; /* between the sink's rounds of beacons, ticks, >= 1,000 */
-    mh_tick relay_wait;    /* longest wait before a relay, ticks, 1 to 1,000 */
+    mh_tick beacon_period;  /* between the sink's rounds of beacons, ticks, 1,000 to 3,600,000 */
+    mh_tick relay_wait;     /* longest wait before a relay, ticks, 1 to 1,000 */
     uint8_t suppress_after; /* copies heard that make a relay needless, >= 1 */
-    uint32_t range_mm;     /* nominal radio range: scales the wait of contention-based forwarding */
+    uint32_t range_mm;      /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
+};
+
+#define MH_COLLECTION_SEEN 3 /* requests remembered, so that none is relayed twice */
+
+/* State of one mote; read it, but leave writing to the protocol. */
+struct mh_collection {
+    const struct mh_collection_config *config;
+    const struct mh_protocol_node *node;
+    mh_node_id sink;
+    mh_node_id parent; /* next hop towards the sink */
+    uint16_t round;    /* newest heard (or, at the sink, begun) */
+    uint8_t hops;      /* to the sink; 0 there */
+    bool joined;       /* sink, parent, round and hops are known */
+    bool stale;        /* ... but two rounds have not come */
+    bool tracking;     /* the sink follows a track */
+    bool beacon_waits, request_waits; /* to be relayed at ... */
+    mh_tick beacon_time, request_time;
+    mh_tick upkeep_time; /* the sink's next round; elsewhere when to ask the neighbours for a path */
+    uint8_t beacon_copies, request_copies; /* heard meanwhile */
+    mh_request_t request;                  /* the one that waits */
+    struct {
+        mh_node_id origin;
+        mh_tick time;
+    } seen[MH_COLLECTION_SEEN];
+    uint8_t seen_count, seen_next;
+    uint16_t dropped; /* reports that had come MH_HOPS_MAX hops, came back to their origin, or found no path; saturates */
 };
 
 extern const struct mh_protocol mh_protocol_collection;

@@ -11,7 +11,7 @@
 #define MH_REPORTS_MAX 64
 #endif
 
-/* Past samples that a sensor node keeps, for differencing and for answering a late request. 8 bytes each. */
+/* Past samples that a sensor node keeps, for differencing and for answering a late request. 10 bytes each. */
 #ifndef MH_SENSOR_HISTORY
 #define MH_SENSOR_HISTORY 4
 #endif

@@ -10,13 +10,14 @@ struct mh_head_config {
     const void *tracker_config; /* the tracker's own structure */
     void *tracker_state;        /* tracker->state_size bytes */
     mh_tick epoch;              /* a sampling instant; the others are whole intervals from it */
-    mh_tick interval;           /* between sampling instants */
+    mh_tick interval;           /* between sampling instants, 1 to 3,600,000 */
     mh_tick window;             /* measurements are waited for this long after their instant; below interval */
 };
 
 struct mh_head_counters {
     uint32_t measurements; /* taken */
     uint32_t late;         /* came after their instant was closed */
+    uint32_t early;        /* belong to an instant after the next */
     uint32_t repeated;     /* same node, target and instant once more */
     uint32_t overflowed;   /* gave way because MH_REPORTS_MAX was reached */
     uint32_t estimates;    /* positions given */
@@ -24,25 +25,29 @@ struct mh_head_counters {
 
 struct mh_head {
     const struct mh_head_config *config;
-    struct mh_measurement measurements[MH_REPORTS_MAX];
+    struct mh_measurement measurements[MH_REPORTS_MAX]; /* by time, then node, then target */
     uint16_t count;
     mh_tick instant; /* the sampling instant being gathered */
     bool tracking;   /* the last step gave a position */
     struct mh_head_counters counters;
 };
 
-/* Begin gathering at the first instant at or after `now`. Errors: MH_ERR_ARGUMENT, or what the tracker's init returns. */
+/* Begin gathering at the first instant at or after `now`. Errors: MH_ERR_ARGUMENT (a null pointer, a value outside its
+ * range), or what the tracker's init returns. */
 enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *config, mh_tick now);
 
-/* Take one measurement into the instant being gathered. Errors: MH_ERR_TIME (late, or of a later instant),
- * MH_ERR_REPEATED, MH_ERR_CAPACITY (something gave way: the smallest increment of all). Each is counted. */
+/* Take one measurement. It belongs to the first instant at or after the time it was taken; one of the instant after the one
+ * being gathered is kept for it. Cost: O(MH_REPORTS_MAX).
+ * Errors, each counted: MH_ERR_TIME (its instant is closed, or is not yet the next), MH_ERR_REPEATED (same node, target and
+ * instant), MH_ERR_CAPACITY (one gave way, this or another: the smallest increment, of equal ones the largest node
+ * number, so that what is kept does not depend on the order of arrival). */
 enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *measurement);
 
 /* When the instant being gathered is to be closed. */
 mh_tick mh_head_deadline(const struct mh_head *head);
 
-/* Close it: order the measurements by time, then node, step the tracker, go on to the next instant.
- * Errors: MH_NONE (no position at this instant). */
+/* Close it: step the tracker with its measurements, go on to the next instant.
+ * Errors: MH_NONE (no position at this instant), or what the tracker's step returns; the next instant is gathered all the same. */
 enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate);
 
 #endif

@@ -8,7 +8,10 @@
 
 typedef uint32_t mh_node_id;
 
-enum { MH_MEASUREMENT_HAS_INCREMENT = 1 }; /* the sample one interval before was really taken */
+enum {
+    MH_MEASUREMENT_HAS_INCREMENT = 1, /* the sample one interval before was really taken */
+    MH_MEASUREMENT_ASKED = 2          /* reported only because a head asked */
+};
 
 struct mh_measurement {
     mh_node_id node;

@@ -16,9 +16,10 @@ struct mh_port {
     void (*transmit)(void *context, mh_node_id destination, const uint8_t *frame, size_t length);
     /* Call mh_mote_alarm at `time` (at once if that is past); replaces the alarm set before. */
     void (*set_alarm)(void *context, mh_tick time);
-    /* The head has an estimate. Valid during the call only. */
+    /* The head has an estimate. Valid during the call only. May be NULL on a mote that does not compute. */
     void (*report)(void *context, const struct mh_estimate *estimate);
-    /* The radio may sleep (true) or must listen (false). NULL if the owner does not care. */
+    /* The radio may sleep (true) or must listen (false, and so from the start); called on changes, which come from the
+     * protocol. Transmitting and the sensor are not concerned. NULL if the owner does not care. */
     void (*sleep)(void *context, bool may_sleep);
 };
 
@@ -54,26 +55,32 @@ struct mh_mote {
     struct mh_protocol_node node;
     struct mh_sensor sensor;
     bool tracking;              /* the network follows a track */
-    bool asked;                 /* a request for asked_time is open */
+    bool asked;                 /* the sample of asked_time is to be reported, whatever it is */
     mh_tick asked_time;
-    struct mh_interest asked_interest;
-    mh_tick protocol_alarm;
-    bool protocol_alarm_set;
+    mh_tick protocol_alarm;     /* when the protocol's timer() is due ... */
+    bool protocol_alarm_set;    /* ... if it is */
+    mh_tick alarm;              /* as last told to the port ... */
+    bool alarm_set;             /* ... if ever: the earlier of the protocol's and the head's */
+    bool may_sleep;             /* as last told to the port */
     struct mh_mote_counters counters;
 };
 
-/* Come up. `config`, all it points to, and `port` outlive the mote. Sets the first alarm; may transmit.
- * Errors: MH_ERR_ARGUMENT, or what the parts' own init functions return. */
+/* Come up. `config`, all it points to, and `port` outlive the mote. Sets the first alarm; may transmit. After an error the mote
+ * must not be used. Errors: MH_ERR_ARGUMENT, or what the parts' own init functions return. */
 enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *config, const struct mh_port *port,
                             void *port_context, mh_tick now);
 
-/* The sensor has sampled. Errors: those of mh_sensor_take (each counted; the mote goes on), MH_ERR_ARGUMENT (no sensor). */
+/* The sensor has sampled, at reading->time, at or before `now`. Reports the sample if it is worth it or asked for.
+ * Errors: those of mh_sensor_take, MH_ERR_TIME also for a reading from the future (each counted; the mote goes on),
+ * MH_ERR_ARGUMENT (no sensor). */
 enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct mh_reading *reading);
 
-/* A frame came in. Errors: those of mh_wire_decode (each counted; the mote goes on). */
+/* A frame came in that was sent to this mote or to all: addressing is the radio's business.
+ * Errors: those of mh_wire_decode (each counted; the mote goes on). */
 enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length);
 
-/* The time asked for with set_alarm has come. Early and repeated calls do no harm. */
+/* The time asked for with set_alarm has come. Early and repeated calls do no harm. A late call is made up for: each call
+ * closes one sampling instant and sets the alarm anew. */
 void mh_mote_alarm(struct mh_mote *mote, mh_tick now);
 
 #endif

@@ -22,6 +22,8 @@ struct mh_protocol_port {
     void (*asked)(void *context, mh_tick now, const struct mh_interest *interest, mh_tick time);
     /* The head has begun (true) or lost (false) a track. */
     void (*tracking)(void *context, bool tracking);
+    /* The radio must be able to receive (true, and so from the start) or need not (false). */
+    void (*listen)(void *context, bool needed);
 };
 
 /* The mote as its protocol sees it. Outlives the protocol's state. */
@@ -38,19 +40,20 @@ struct mh_protocol {
     size_t state_size;  /* bytes of the state that init() fills */
     size_t config_size; /* bytes of the configuration that init() reads */
 
-    /* Errors: MH_ERR_ARGUMENT (a configuration value outside the range its header gives). */
+    /* `config` and `node` outlive the state. Errors: MH_ERR_ARGUMENT (a configuration value outside the range its header
+     * gives). */
     enum mh_status (*init)(void *state, const void *config, const struct mh_protocol_node *node);
-    /* The mote is up. */
+    /* The mote is up. Called before any of the following. */
     void (*start)(void *state, mh_tick now);
-    /* A sound message came in. */
+    /* A sound message came in, sent to this mote or to all. */
     void (*message)(void *state, mh_tick now, const struct mh_message *message);
-    /* The time set with set_timer has come. */
+    /* The time set with set_timer has come. Early and repeated calls do no harm. */
     void (*timer)(void *state, mh_tick now);
     /* Hand on what this node measured. Errors: MH_ERR_NO_ROUTE. */
     enum mh_status (*publish)(void *state, mh_tick now, const struct mh_measurement *measurement);
-    /* Head: ask the nodes in `interest` for the sample of instant `time`. */
+    /* Head: ask the nodes in `interest` for the sample of instant `time`. Errors: MH_ERR_ARGUMENT (not a head). */
     enum mh_status (*ask)(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time);
-    /* Head: tell the network that a track has begun or is lost. */
+    /* Head: tell the network that a track has begun or is lost. No effect on other motes. */
     void (*tell_tracking)(void *state, mh_tick now, bool tracking);
 };
 

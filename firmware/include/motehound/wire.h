@@ -33,14 +33,15 @@ struct mh_message {
 /* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (unknown kind). */
 enum mh_status mh_wire_encode(const struct mh_message *message, uint8_t *frame, size_t *length);
 
-/* frame[0 .. length) -> message. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields that no sender
- * writes: more than MH_HOPS_MAX hops, negative radius), MH_ERR_UNKNOWN (sound, but of a type this build does not know). */
+/* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields
+ * that no sender writes: MH_BROADCAST as sender, more than MH_HOPS_MAX hops, a place outside +- 1e9 mm, a negative radius),
+ * MH_ERR_UNKNOWN (sound, but of a type this build does not know). */
 enum mh_status mh_wire_decode(const uint8_t *frame, size_t length, struct mh_message *message);
 
 /* ITU-T CRC-16 as IEEE 802.15.4 uses it: polynomial x^16 + x^12 + x^5 + 1, reflected, initial value 0. */
 uint16_t mh_wire_fcs(const uint8_t *bytes, size_t length);
 
-/* A measurement as the report its node `sender` puts on the air (hops 0), and back. */
+/* A measurement as the report that its node puts on the air (hops 0), and back. */
 void mh_report_from_measurement(const struct mh_measurement *measurement, mh_report_t *report);
 void mh_report_to_measurement(const mh_report_t *report, struct mh_measurement *measurement);
 

@@ -1,0 +1,123 @@
+#include "motehound/head.h"
+
+#include <string.h>
+
+/* The order the tracker is promised: -1, 0 or 1 as a comes before, with or after b. */
+static int order(const struct mh_measurement *a, const struct mh_measurement *b)
+{
+    if (a->time != b->time) {
+        return mh_tick_before(a->time, b->time) ? -1 : 1;
+    }
+    if (a->node != b->node) {
+        return a->node < b->node ? -1 : 1;
+    }
+    return (a->target > b->target) - (a->target < b->target);
+}
+
+/* The order in which measurements give way when the table is full. */
+static bool gives_way_before(const struct mh_measurement *a, const struct mh_measurement *b)
+{
+    if (a->increment != b->increment) {
+        return a->increment < b->increment;
+    }
+    return a->node != b->node ? a->node > b->node : order(a, b) > 0;
+}
+
+static bool is_of_next(const struct mh_head *head, const struct mh_measurement *measurement)
+{
+    return mh_tick_before(head->instant, measurement->time);
+}
+
+static void insert(struct mh_head *head, const struct mh_measurement *measurement)
+{
+    uint16_t at = head->count++;
+    for (; at > 0 && order(measurement, &head->measurements[at - 1]) < 0; at--) {
+        head->measurements[at] = head->measurements[at - 1];
+    }
+    head->measurements[at] = *measurement;
+}
+
+static void remove_at(struct mh_head *head, uint16_t at)
+{
+    head->count--;
+    memmove(&head->measurements[at], &head->measurements[at + 1],
+            (size_t)(head->count - at) * sizeof head->measurements[0]);
+}
+
+enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *config, mh_tick now)
+{
+    if (!head || !config || !config->tracker || !config->tracker_config || !config->tracker_state ||
+        config->interval < 1 || config->interval > 3600000u || config->window >= config->interval) {
+        return MH_ERR_ARGUMENT;
+    }
+    const enum mh_status status =
+        config->tracker->init(config->tracker_state, config->tracker_config, config->interval);
+    if (status != MH_OK) {
+        return status;
+    }
+    memset(head, 0, sizeof *head);
+    head->config = config;
+    const uint32_t since = now - config->epoch, until = config->epoch - now;
+    head->instant = mh_tick_before(config->epoch, now)
+                        ? config->epoch + (since + config->interval - 1) / config->interval * config->interval
+                        : config->epoch - until / config->interval * config->interval;
+    return MH_OK;
+}
+
+enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *measurement)
+{
+    const int32_t interval = (int32_t)head->config->interval;
+    const int32_t ahead = mh_ticks_between(head->instant, measurement->time);
+    if (ahead <= -interval) {
+        head->counters.late++;
+        return MH_ERR_TIME;
+    }
+    if (ahead > interval) {
+        head->counters.early++;
+        return MH_ERR_TIME;
+    }
+    uint16_t least = 0;
+    for (uint16_t i = 0; i < head->count; i++) {
+        const struct mh_measurement *kept = &head->measurements[i];
+        if (kept->node == measurement->node && kept->target == measurement->target &&
+            is_of_next(head, kept) == is_of_next(head, measurement)) {
+            head->counters.repeated++;
+            return MH_ERR_REPEATED;
+        }
+        if (gives_way_before(kept, &head->measurements[least])) {
+            least = i;
+        }
+    }
+    head->counters.measurements++;
+    if (head->count < MH_REPORTS_MAX) {
+        insert(head, measurement);
+        return MH_OK;
+    }
+    head->counters.overflowed++;
+    if (gives_way_before(&head->measurements[least], measurement)) {
+        remove_at(head, least);
+        insert(head, measurement);
+    }
+    return MH_ERR_CAPACITY;
+}
+
+mh_tick mh_head_deadline(const struct mh_head *head)
+{
+    return head->instant + head->config->window;
+}
+
+enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate)
+{
+    uint16_t due = 0; /* the others are already of the next instant */
+    while (due < head->count && !is_of_next(head, &head->measurements[due])) {
+        due++;
+    }
+    const enum mh_status status =
+        head->config->tracker->step(head->config->tracker_state, head->instant, head->measurements, due, estimate);
+    head->tracking = status == MH_OK;
+    head->counters.estimates += head->tracking;
+    head->count = (uint16_t)(head->count - due);
+    memmove(&head->measurements[0], &head->measurements[due], head->count * sizeof head->measurements[0]);
+    head->instant += head->config->interval;
+    return status;
+}

@@ -1,0 +1,239 @@
+#include "motehound/mote.h"
+
+#include <string.h>
+
+#define PLACE_LIMIT_MM 1000000000
+
+static bool on_the_map(int32_t mm)
+{
+    return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM;
+}
+
+static void *protocol_state(const struct mh_mote *mote)
+{
+    return mote->config->protocol_state;
+}
+
+/* One alarm of the port serves the protocol's timer and the head's deadline. The port hears of it when it changes, and after
+ * an alarm, which has used it up. */
+static void set_alarm(struct mh_mote *mote, bool used_up)
+{
+    bool wanted = mote->protocol_alarm_set;
+    mh_tick next = mote->protocol_alarm;
+    if (mote->config->head) {
+        const mh_tick deadline = mh_head_deadline(mote->config->head_state);
+        if (!wanted || mh_tick_before(deadline, next)) {
+            next = deadline;
+        }
+        wanted = true;
+    }
+    if (wanted && (used_up || !mote->alarm_set || mote->alarm != next)) {
+        mote->alarm = next;
+        mote->alarm_set = true;
+        mote->port->set_alarm(mote->port_context, next);
+    }
+}
+
+static void report(struct mh_mote *mote, mh_tick now, const struct mh_sample *sample, uint8_t flags)
+{
+    const struct mh_measurement measurement = {
+        .node = mote->node.id,
+        .place = mote->node.place,
+        .time = sample->time,
+        .value = sample->value,
+        .increment = sample->increment,
+        .flags = (uint8_t)(flags | (sample->has_increment ? MH_MEASUREMENT_HAS_INCREMENT : 0)),
+        .target = sample->target,
+    };
+    mote->counters.reports++;
+    mote->counters.reports_asked += (flags & MH_MEASUREMENT_ASKED) != 0;
+    if (mote->config->head) {
+        (void)mh_head_measurement(mote->config->head_state, &measurement); /* counts what it refuses */
+    } else if (mote->config->protocol->publish(protocol_state(mote), now, &measurement) != MH_OK) {
+        mote->counters.reports_no_route++;
+        return;
+    }
+    mh_sensor_mark_reported(&mote->sensor, sample);
+}
+
+/* ---- what the protocol asks of the mote ---- */
+
+static void protocol_send(void *context, mh_node_id destination, const struct mh_message *message)
+{
+    struct mh_mote *mote = context;
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    if (mh_wire_encode(message, frame, &length) == MH_OK) {
+        mote->counters.frames_sent++;
+        mote->port->transmit(mote->port_context, destination, frame, length);
+    }
+}
+
+static void protocol_set_timer(void *context, mh_tick time)
+{
+    struct mh_mote *mote = context;
+    mote->protocol_alarm = time;
+    mote->protocol_alarm_set = true;
+}
+
+static void protocol_deliver(void *context, mh_tick now, const struct mh_measurement *measurement)
+{
+    struct mh_mote *mote = context;
+    (void)now;
+    if (mote->config->head) {
+        (void)mh_head_measurement(mote->config->head_state, measurement); /* counts what it refuses */
+    }
+}
+
+static void protocol_asked(void *context, mh_tick now, const struct mh_interest *interest, mh_tick time)
+{
+    struct mh_mote *mote = context;
+    struct mh_sample sample;
+    if (!mote->config->sensor || !mh_place_within(&mote->node.place, &interest->centre, interest->radius_mm)) {
+        return;
+    }
+    if (mh_sensor_recall(&mote->sensor, time, &sample) != MH_OK) {
+        mote->asked = true;
+        mote->asked_time = time;
+    } else if (!sample.reported) {
+        report(mote, now, &sample, MH_MEASUREMENT_ASKED);
+    }
+}
+
+static void protocol_tracking(void *context, bool tracking)
+{
+    struct mh_mote *mote = context;
+    mote->tracking = tracking;
+}
+
+static void protocol_listen(void *context, bool needed)
+{
+    struct mh_mote *mote = context;
+    if (mote->may_sleep == needed) {
+        mote->may_sleep = !needed;
+        if (mote->port->sleep) {
+            mote->port->sleep(mote->port_context, mote->may_sleep);
+        }
+    }
+}
+
+static const struct mh_protocol_port protocol_port = {
+    .send = protocol_send,
+    .set_timer = protocol_set_timer,
+    .deliver = protocol_deliver,
+    .asked = protocol_asked,
+    .tracking = protocol_tracking,
+    .listen = protocol_listen,
+};
+
+/* ---- the events ---- */
+
+enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *config, const struct mh_port *port,
+                            void *port_context, mh_tick now)
+{
+    if (!mote || !config || !port || !port->transmit || !port->set_alarm || config->id >= MH_BROADCAST ||
+        !on_the_map(config->place.x_mm) || !on_the_map(config->place.y_mm) || !on_the_map(config->place.z_mm) ||
+        !config->protocol || !config->protocol_state || (config->head && (!config->head_state || !port->report))) {
+        return MH_ERR_ARGUMENT;
+    }
+    memset(mote, 0, sizeof *mote);
+    mote->config = config;
+    mote->port = port;
+    mote->port_context = port_context;
+    const struct mh_protocol_node node = {config->id, config->place, config->head != NULL, &protocol_port, mote};
+    mote->node = node;
+    enum mh_status status = MH_OK;
+    if (config->sensor) {
+        status = mh_sensor_init(&mote->sensor, config->sensor);
+    }
+    if (status == MH_OK && config->head) {
+        status = mh_head_init(config->head_state, config->head, now);
+    }
+    if (status == MH_OK) {
+        status = config->protocol->init(config->protocol_state, config->protocol_config, &mote->node);
+    }
+    if (status == MH_OK) {
+        config->protocol->start(config->protocol_state, now);
+        set_alarm(mote, true);
+    }
+    return status;
+}
+
+enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct mh_reading *reading)
+{
+    if (!mote->config->sensor) {
+        return MH_ERR_ARGUMENT;
+    }
+    struct mh_sample sample;
+    const enum mh_status status =
+        mh_tick_before(now, reading->time) ? MH_ERR_TIME : mh_sensor_take(&mote->sensor, reading, &sample);
+    if (status != MH_OK) {
+        if (status == MH_ERR_REPEATED) {
+            mote->counters.readings_repeated++;
+        } else {
+            mote->counters.readings_refused++;
+        }
+        return status;
+    }
+    mote->counters.readings++;
+    const bool asked = mote->asked && mh_sensor_is_of(&mote->sensor, &sample, mote->asked_time);
+    if (mh_sensor_reports(&mote->sensor, &sample, mote->tracking)) {
+        report(mote, now, &sample, 0);
+    } else if (asked) {
+        report(mote, now, &sample, MH_MEASUREMENT_ASKED);
+    }
+    /* answered, or the sample asked for is so long overdue that nobody waits for it */
+    if (asked || mh_ticks_between(mote->asked_time, sample.time) > 2 * (int32_t)mote->config->sensor->interval) {
+        mote->asked = false;
+    }
+    set_alarm(mote, false);
+    return MH_OK;
+}
+
+enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length)
+{
+    struct mh_message message;
+    const enum mh_status status = mh_wire_decode(frame, length, &message);
+    if (status == MH_OK) {
+        mote->counters.frames_received++;
+        mote->config->protocol->message(protocol_state(mote), now, &message);
+        set_alarm(mote, false);
+    } else if (status == MH_ERR_UNKNOWN) {
+        mote->counters.frames_unknown++;
+    } else {
+        mote->counters.frames_corrupt++;
+    }
+    return status;
+}
+
+static void close_instant(struct mh_mote *mote, mh_tick now)
+{
+    struct mh_head *head = mote->config->head_state;
+    const struct mh_protocol *protocol = mote->config->protocol;
+    const struct mh_tracker *tracker = mote->config->head->tracker;
+    struct mh_estimate estimate;
+    struct mh_interest interest;
+    if (mh_head_close(head, &estimate) == MH_OK) {
+        mote->port->report(mote->port_context, &estimate);
+    }
+    if (mote->tracking != head->tracking) {
+        mote->tracking = head->tracking;
+        protocol->tell_tracking(protocol_state(mote), now, head->tracking);
+    }
+    if (tracker->interest && tracker->interest(mote->config->head->tracker_state, &interest) == MH_OK) {
+        (void)protocol->ask(protocol_state(mote), now, &interest, head->instant);
+        protocol_asked(mote, now, &interest, head->instant);
+    }
+}
+
+void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
+{
+    if (mote->protocol_alarm_set && !mh_tick_before(now, mote->protocol_alarm)) {
+        mote->protocol_alarm_set = false;
+        mote->config->protocol->timer(protocol_state(mote), now);
+    }
+    if (mote->config->head && !mh_tick_before(now, mh_head_deadline(mote->config->head_state))) {
+        close_instant(mote, now);
+    }
+    set_alarm(mote, true);
+}

@@ -1,0 +1,359 @@
+#include "motehound/collection.h"
+
+#include <string.h>
+
+static mh_tick earlier(mh_tick a, mh_tick b)
+{
+    return mh_tick_before(a, b) ? a : b;
+}
+
+static bool has_come(mh_tick time, mh_tick now)
+{
+    return !mh_tick_before(now, time);
+}
+
+/* A number below `limit` that differs between neighbours and from round to round: both are mixed by a multiplicative hash
+ * (the finaliser of MurmurHash3). */
+static mh_tick spread(const struct mh_collection *c, mh_tick limit)
+{
+    uint32_t hash = c->node->id ^ ((uint32_t)c->round << 16 | c->hops) * 0x9E3779B1u;
+    hash = (hash ^ hash >> 16) * 0x85EBCA6Bu;
+    hash = (hash ^ hash >> 13) * 0xC2B2AE35u;
+    hash ^= hash >> 16;
+    return (mh_tick)((uint64_t)hash * limit >> 32);
+}
+
+static uint32_t distance_mm(const struct mh_place *a, const struct mh_place *b)
+{
+    const int64_t dx = (int64_t)a->x_mm - b->x_mm;
+    const int64_t dy = (int64_t)a->y_mm - b->y_mm;
+    uint64_t rest = (uint64_t)(dx * dx + dy * dy);
+    uint64_t root = 0; /* digit by digit, base 4 */
+    for (uint64_t bit = (uint64_t)1 << 62; bit != 0; bit >>= 2) {
+        const uint64_t trial = root + bit;
+        root >>= 1;
+        if (rest >= trial) {
+            rest -= trial;
+            root += bit;
+        }
+    }
+    return (uint32_t)root;
+}
+
+static void arm(struct mh_collection *c)
+{
+    mh_tick next = c->upkeep_time;
+    if (c->beacon_waits) {
+        next = earlier(next, c->beacon_time);
+    }
+    if (c->request_waits) {
+        next = earlier(next, c->request_time);
+    }
+    c->node->port->set_timer(c->node->context, next);
+}
+
+static void send(const struct mh_collection *c, mh_node_id destination, const struct mh_message *message)
+{
+    c->node->port->send(c->node->context, destination, message);
+}
+
+static void drop(struct mh_collection *c)
+{
+    if (c->dropped < UINT16_MAX) {
+        c->dropped++;
+    }
+}
+
+/* ---- the tree ---- */
+
+static void send_beacon(const struct mh_collection *c, mh_node_id sink)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_BEACON,
+                                       .as.beacon = {.sender = (int32_t)c->node->id,
+                                                     .sink = (int32_t)sink,
+                                                     .round = (int16_t)c->round,
+                                                     .hops = c->hops,
+                                                     .tracking = c->tracking}};
+    send(c, MH_BROADCAST, &message);
+}
+
+static void begin_round(struct mh_collection *c, mh_tick now)
+{
+    c->round++;
+    c->beacon_waits = false;
+    c->upkeep_time = now + c->config->beacon_period;
+    send_beacon(c, c->node->id);
+}
+
+static void wait_to_relay_beacon(struct mh_collection *c, mh_tick now)
+{
+    c->beacon_waits = true;
+    c->beacon_copies = 0;
+    c->beacon_time = now + 1 + spread(c, c->config->relay_wait);
+}
+
+static bool is_better(const struct mh_collection *c, const mh_beacon_t *beacon)
+{
+    const bool nearer = beacon->hops + 1 < c->hops;
+    if (!c->joined) {
+        return true;
+    }
+    if ((mh_node_id)beacon->sink != c->sink) {
+        return nearer || c->stale;
+    }
+    const int16_t rounds_newer = (int16_t)((uint16_t)beacon->round - c->round);
+    return rounds_newer == 0 ? nearer : rounds_newer > 0 || c->stale;
+}
+
+static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon)
+{
+    c->sink = (mh_node_id)beacon->sink;
+    c->parent = (mh_node_id)beacon->sender;
+    c->round = (uint16_t)beacon->round;
+    c->hops = (uint8_t)(beacon->hops + 1);
+    c->joined = true;
+    c->stale = false;
+    c->upkeep_time = now + 2 * c->config->beacon_period + spread(c, c->config->beacon_period);
+    wait_to_relay_beacon(c, now);
+    if (c->tracking != (beacon->tracking != 0)) {
+        c->tracking = !c->tracking;
+        c->node->port->tracking(c->node->context, c->tracking);
+    }
+}
+
+static void hear_beacon(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon)
+{
+    if ((mh_node_id)beacon->sink == MH_BROADCAST) { /* a neighbour without a path */
+        if (c->joined && !c->stale && !c->beacon_waits) {
+            wait_to_relay_beacon(c, now);
+        }
+    } else if (!c->node->is_head && beacon->hops < MH_HOPS_MAX && is_better(c, beacon)) {
+        join(c, now, beacon);
+    } else if (c->beacon_waits && (mh_node_id)beacon->sink == c->sink && (uint16_t)beacon->round == c->round &&
+               beacon->hops <= c->hops) {
+        c->beacon_waits = ++c->beacon_copies < c->config->suppress_after;
+    }
+}
+
+/* ---- reports, up the tree ---- */
+
+static void hear_report(struct mh_collection *c, mh_tick now, const mh_report_t *report)
+{
+    if (c->node->is_head) {
+        struct mh_measurement measurement;
+        mh_report_to_measurement(report, &measurement);
+        c->node->port->deliver(c->node->context, now, &measurement);
+        return;
+    }
+    if (!c->joined || report->hops >= MH_HOPS_MAX || (mh_node_id)report->origin == c->node->id) {
+        drop(c);
+        return;
+    }
+    struct mh_message relayed = {.kind = MH_MESSAGE_REPORT, .as.report = *report};
+    relayed.as.report.sender = (int32_t)c->node->id;
+    relayed.as.report.hops++;
+    send(c, c->parent, &relayed);
+}
+
+/* ---- requests, towards a place ---- */
+
+static bool remember(struct mh_collection *c, const mh_request_t *request)
+{
+    for (uint8_t i = 0; i < c->seen_count; i++) {
+        if (c->seen[i].origin == (mh_node_id)request->origin && c->seen[i].time == (mh_tick)request->time_ms) {
+            return false;
+        }
+    }
+    c->seen[c->seen_next].origin = (mh_node_id)request->origin;
+    c->seen[c->seen_next].time = (mh_tick)request->time_ms;
+    c->seen_next = (uint8_t)((c->seen_next + 1) % MH_COLLECTION_SEEN);
+    if (c->seen_count < MH_COLLECTION_SEEN) {
+        c->seen_count++;
+    }
+    return true;
+}
+
+/* The first copy: pass it on upwards in this mote and, if that helps, to the neighbours. */
+static void consider_request(struct mh_collection *c, mh_tick now, const mh_request_t *request,
+                             const struct mh_place *sender, const struct mh_interest *interest, bool covered)
+{
+    c->node->port->asked(c->node->context, now, interest, (mh_tick)request->time_ms);
+    const uint32_t range = c->config->range_mm;
+    const uint32_t from_sender = distance_mm(sender, &interest->centre);
+    const uint32_t from_here = distance_mm(&c->node->place, &interest->centre);
+    if (covered || request->hops >= MH_HOPS_MAX || (from_here >= from_sender && from_here > interest->radius_mm)) {
+        return;
+    }
+    const uint32_t progress = from_here < from_sender ? from_sender - from_here : 0;
+    const uint32_t missing = progress < range ? range - progress : 0;
+    c->request = *request;
+    c->request_waits = true;
+    c->request_copies = 0;
+    c->request_time = now + 1 + (mh_tick)((uint64_t)c->config->relay_wait * missing / range);
+}
+
+static void hear_request(struct mh_collection *c, mh_tick now, const mh_request_t *request)
+{
+    if ((mh_node_id)request->origin == c->node->id) {
+        return;
+    }
+    const struct mh_interest interest = {{request->x_mm, request->y_mm, 0}, (uint32_t)request->radius_mm};
+    const struct mh_place sender = {request->sender_x_mm, request->sender_y_mm, 0};
+    const uint32_t range = c->config->range_mm;
+    const bool covered =
+        interest.radius_mm <= range && mh_place_within(&sender, &interest.centre, range - interest.radius_mm);
+    if (remember(c, request)) {
+        consider_request(c, now, request, &sender, &interest, covered);
+    } else if (c->request_waits && c->request.origin == request->origin && c->request.time_ms == request->time_ms) {
+        const bool inside = mh_place_within(&c->node->place, &interest.centre, interest.radius_mm);
+        const bool needless =
+            inside ? ++c->request_copies >= c->config->suppress_after
+                   : distance_mm(&sender, &interest.centre) <= distance_mm(&c->node->place, &interest.centre);
+        c->request_waits = !covered && !needless;
+    }
+}
+
+static void send_request(const struct mh_collection *c, const mh_request_t *request)
+{
+    struct mh_message message = {.kind = MH_MESSAGE_REQUEST, .as.request = *request};
+    message.as.request.sender = (int32_t)c->node->id;
+    message.as.request.sender_x_mm = c->node->place.x_mm;
+    message.as.request.sender_y_mm = c->node->place.y_mm;
+    send(c, MH_BROADCAST, &message);
+}
+
+/* ---- the table ---- */
+
+static enum mh_status init(void *state, const void *config, const struct mh_protocol_node *node)
+{
+    struct mh_collection *c = state;
+    const struct mh_collection_config *chosen = config;
+    if (!c || !chosen || !node || chosen->beacon_period < 1000 || chosen->beacon_period > 3600000u ||
+        chosen->relay_wait < 1 || chosen->relay_wait > 1000 || chosen->suppress_after < 1 || chosen->range_mm < 1 ||
+        chosen->range_mm > 1000000000u) {
+        return MH_ERR_ARGUMENT;
+    }
+    memset(c, 0, sizeof *c);
+    c->config = chosen;
+    c->node = node;
+    return MH_OK;
+}
+
+static void start(void *state, mh_tick now)
+{
+    struct mh_collection *c = state;
+    if (c->node->is_head) {
+        c->sink = c->node->id;
+        c->joined = true;
+        c->upkeep_time = now + c->config->relay_wait; /* the others need a moment to come up */
+    } else {
+        /* soon: a node that the first round does not reach should not wait for the second */
+        c->upkeep_time = now + c->config->beacon_period / 8 + spread(c, c->config->beacon_period / 8);
+    }
+    arm(c);
+}
+
+static void message(void *state, mh_tick now, const struct mh_message *heard)
+{
+    struct mh_collection *c = state;
+    switch (heard->kind) {
+    case MH_MESSAGE_BEACON:
+        hear_beacon(c, now, &heard->as.beacon);
+        break;
+    case MH_MESSAGE_REPORT:
+        hear_report(c, now, &heard->as.report);
+        break;
+    case MH_MESSAGE_REQUEST:
+        hear_request(c, now, &heard->as.request);
+        break;
+    default:
+        break;
+    }
+    arm(c);
+}
+
+static void timer(void *state, mh_tick now)
+{
+    struct mh_collection *c = state;
+    if (c->beacon_waits && has_come(c->beacon_time, now)) {
+        c->beacon_waits = false;
+        send_beacon(c, c->sink);
+    }
+    if (c->request_waits && has_come(c->request_time, now)) {
+        c->request_waits = false;
+        c->request.hops++;
+        send_request(c, &c->request);
+    }
+    if (has_come(c->upkeep_time, now)) {
+        if (c->node->is_head) {
+            begin_round(c, now);
+        } else {
+            c->stale = true;
+            c->beacon_waits = false;
+            c->upkeep_time = now + c->config->beacon_period;
+            send_beacon(c, MH_BROADCAST);
+        }
+    }
+    arm(c);
+}
+
+static enum mh_status publish(void *state, mh_tick now, const struct mh_measurement *measurement)
+{
+    const struct mh_collection *c = state;
+    (void)now;
+    if (!c->joined || c->node->is_head) {
+        return MH_ERR_NO_ROUTE;
+    }
+    struct mh_message message_up = {.kind = MH_MESSAGE_REPORT};
+    mh_report_from_measurement(measurement, &message_up.as.report);
+    send(c, c->parent, &message_up);
+    return MH_OK;
+}
+
+static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time)
+{
+    const struct mh_collection *c = state;
+    (void)now;
+    if (!c->node->is_head) {
+        return MH_ERR_ARGUMENT;
+    }
+    const mh_request_t request = {
+        .origin = (int32_t)c->node->id,
+        .time_ms = (int32_t)time,
+        .x_mm = interest->centre.x_mm,
+        .y_mm = interest->centre.y_mm,
+        .radius_mm = interest->radius_mm < INT32_MAX ? (int32_t)interest->radius_mm : INT32_MAX,
+    };
+    send_request(c, &request);
+    return MH_OK;
+}
+
+static void tell_tracking(void *state, mh_tick now, bool tracking)
+{
+    struct mh_collection *c = state;
+    if (c->node->is_head && c->tracking != tracking) {
+        c->tracking = tracking;
+        begin_round(c, now);
+        arm(c);
+    }
+}
+
+const struct mh_protocol mh_protocol_collection = {
+    .name = "collection",
+    .state_size = sizeof(struct mh_collection),
+    .config_size = sizeof(struct mh_collection_config),
+    .init = init,
+    .start = start,
+    .message = message,
+    .timer = timer,
+    .publish = publish,
+    .ask = ask,
+    .tell_tracking = tell_tracking,
+};
+
+void mh_collection_config_default(struct mh_collection_config *config)
+{
+    const struct mh_collection_config nominal = {
+        .beacon_period = 30000, .relay_wait = 20, .suppress_after = 3, .range_mm = 15000};
+    *config = nominal;
+}

@@ -1,0 +1,277 @@
+#include "motehound/wire.h"
+#include "port.h"
+#include "unity.h"
+
+#include <string.h>
+
+static uint8_t frame[MH_FRAME_MAX];
+static size_t length;
+static struct mh_message decoded;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static struct mh_message example(enum mh_message_kind kind)
+{
+    struct mh_message message = {.kind = kind};
+    switch (kind) {
+    case MH_MESSAGE_BEACON: {
+        const mh_beacon_t beacon = {.sender = 7, .sink = -2, .round = -32768, .hops = 3, .tracking = 1};
+        message.as.beacon = beacon;
+        break;
+    }
+    case MH_MESSAGE_REPORT: {
+        const mh_report_t report = {.sender = 1,
+                                    .origin = 2,
+                                    .time_ms = -3,
+                                    .x_mm = 1000000000,
+                                    .y_mm = -1000000000,
+                                    .z_mm = 12,
+                                    .value_q20 = INT32_MAX,
+                                    .increment_q20 = INT32_MIN,
+                                    .flags = 3,
+                                    .target = 255,
+                                    .hops = MH_HOPS_MAX};
+        message.as.report = report;
+        break;
+    }
+    default: {
+        const mh_request_t request = {.sender = 1,
+                                      .origin = 2,
+                                      .time_ms = INT32_MIN,
+                                      .x_mm = 4,
+                                      .y_mm = -5,
+                                      .radius_mm = 8000,
+                                      .sender_x_mm = 6,
+                                      .sender_y_mm = -7,
+                                      .hops = 0};
+        message.as.request = request;
+        break;
+    }
+    }
+    return message;
+}
+
+static void encode(const struct mh_message *message)
+{
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_encode(message, frame, &length));
+    TEST_ASSERT_TRUE(length <= MH_FRAME_MAX);
+}
+
+/* "123456789" -> 0x2189: CRC-16/KERMIT of the CRC catalogue, which is the FCS of IEEE 802.15.4 */
+static void check_sum_of_the_catalogue(void)
+{
+    TEST_ASSERT_EQUAL_HEX16(0x2189, mh_wire_fcs((const uint8_t *)"123456789", 9));
+    TEST_ASSERT_EQUAL_HEX16(0, mh_wire_fcs(frame, 0));
+}
+
+static void check_sum_equals_the_division_bit_by_bit(void)
+{
+    uint8_t bytes[3];
+    for (uint16_t trial = 0; trial < 300; trial++) {
+        uint16_t remainder = 0;
+        for (uint8_t i = 0; i < 3; i++) {
+            bytes[i] = (uint8_t)(trial * 77u + i * 131u);
+            remainder = (uint16_t)(remainder ^ bytes[i]);
+            for (uint8_t bit = 0; bit < 8; bit++) {
+                remainder = (uint16_t)(remainder & 1u ? remainder >> 1 ^ 0x8408u : remainder >> 1);
+            }
+        }
+        TEST_ASSERT_EQUAL_HEX16(remainder, mh_wire_fcs(bytes, 3));
+    }
+}
+
+static void every_kind_makes_the_round_trip(void)
+{
+    const struct mh_message beacon = example(MH_MESSAGE_BEACON), report = example(MH_MESSAGE_REPORT),
+                            request = example(MH_MESSAGE_REQUEST);
+    encode(&beacon);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+    TEST_ASSERT_EQUAL(MH_MESSAGE_BEACON, decoded.kind);
+    TEST_ASSERT_EQUAL_INT32(7, decoded.as.beacon.sender);
+    TEST_ASSERT_EQUAL_INT32(-2, decoded.as.beacon.sink);
+    TEST_ASSERT_EQUAL_INT16(-32768, decoded.as.beacon.round);
+    TEST_ASSERT_EQUAL_UINT8(3, decoded.as.beacon.hops);
+    TEST_ASSERT_EQUAL_UINT8(1, decoded.as.beacon.tracking);
+    encode(&report);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+    TEST_ASSERT_EQUAL(MH_MESSAGE_REPORT, decoded.kind);
+    TEST_ASSERT_EQUAL_INT32(1, decoded.as.report.sender);
+    TEST_ASSERT_EQUAL_INT32(2, decoded.as.report.origin);
+    TEST_ASSERT_EQUAL_INT32(-3, decoded.as.report.time_ms);
+    TEST_ASSERT_EQUAL_INT32(1000000000, decoded.as.report.x_mm);
+    TEST_ASSERT_EQUAL_INT32(-1000000000, decoded.as.report.y_mm);
+    TEST_ASSERT_EQUAL_INT32(12, decoded.as.report.z_mm);
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, decoded.as.report.value_q20);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, decoded.as.report.increment_q20);
+    TEST_ASSERT_EQUAL_UINT8(3, decoded.as.report.flags);
+    TEST_ASSERT_EQUAL_UINT8(255, decoded.as.report.target);
+    TEST_ASSERT_EQUAL_UINT8(MH_HOPS_MAX, decoded.as.report.hops);
+    encode(&request);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+    TEST_ASSERT_EQUAL(MH_MESSAGE_REQUEST, decoded.kind);
+    TEST_ASSERT_EQUAL_INT32(INT32_MIN, decoded.as.request.time_ms);
+    TEST_ASSERT_EQUAL_INT32(4, decoded.as.request.x_mm);
+    TEST_ASSERT_EQUAL_INT32(-5, decoded.as.request.y_mm);
+    TEST_ASSERT_EQUAL_INT32(8000, decoded.as.request.radius_mm);
+    TEST_ASSERT_EQUAL_INT32(6, decoded.as.request.sender_x_mm);
+    TEST_ASSERT_EQUAL_INT32(-7, decoded.as.request.sender_y_mm);
+}
+
+static void every_single_bit_counts(void)
+{
+    for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
+        const struct mh_message message = example(kind);
+        encode(&message);
+        for (size_t bit = 0; bit < 8 * length; bit++) {
+            frame[bit / 8] = (uint8_t)(frame[bit / 8] ^ 1u << bit % 8);
+            TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
+            frame[bit / 8] = (uint8_t)(frame[bit / 8] ^ 1u << bit % 8);
+        }
+        TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+    }
+}
+
+static void every_truncation_is_refused(void)
+{
+    for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
+        const struct mh_message message = example(kind);
+        encode(&message);
+        for (size_t shorter = 0; shorter < length; shorter++) {
+            TEST_ASSERT_NOT_EQUAL(MH_OK, mh_wire_decode(frame, shorter, &decoded));
+        }
+    }
+}
+
+/* Change bytes, but keep the check sum right. */
+static void seal(size_t end)
+{
+    const uint16_t fcs = mh_wire_fcs(frame, end);
+    frame[end] = (uint8_t)(fcs & 0xFFu);
+    frame[end + 1] = (uint8_t)(fcs >> 8);
+    length = end + 2;
+}
+
+static void a_sound_frame_of_wrong_length_is_corrupt(void)
+{
+    const struct mh_message message = example(MH_MESSAGE_REPORT);
+    encode(&message);
+    const size_t right = length - 2;
+    for (size_t end = 8; end <= MH_FRAME_MAX - 2; end++) {
+        seal(end);
+        TEST_ASSERT_EQUAL(end == right ? MH_OK : MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
+        encode(&message);
+    }
+    seal(MH_FRAME_MAX - 2);
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(frame, MH_FRAME_MAX + 1, &decoded));
+}
+
+static void an_unknown_type_is_told_apart(void)
+{
+    const struct mh_message message = example(MH_MESSAGE_BEACON);
+    for (uint8_t i = 0; i < 8; i++) {
+        encode(&message);
+        frame[i] = (uint8_t)(frame[i] + 1);
+        seal(length - 2);
+        decoded.kind = MH_MESSAGE_REQUEST;
+        TEST_ASSERT_EQUAL(MH_ERR_UNKNOWN, mh_wire_decode(frame, length, &decoded));
+        TEST_ASSERT_EQUAL(MH_MESSAGE_REQUEST, decoded.kind);
+    }
+}
+
+static void fields_that_nobody_writes_are_corrupt(void)
+{
+    struct mh_message bad[] = {example(MH_MESSAGE_BEACON),  example(MH_MESSAGE_BEACON),  example(MH_MESSAGE_BEACON),
+                               example(MH_MESSAGE_REPORT),  example(MH_MESSAGE_REPORT),  example(MH_MESSAGE_REPORT),
+                               example(MH_MESSAGE_REQUEST), example(MH_MESSAGE_REQUEST), example(MH_MESSAGE_REQUEST)};
+    bad[0].as.beacon.sender = -1;
+    bad[1].as.beacon.hops = MH_HOPS_MAX + 1;
+    bad[2].as.beacon.tracking = 2;
+    bad[3].as.report.hops = MH_HOPS_MAX + 1;
+    bad[4].as.report.z_mm = 1000000001;
+    bad[5].as.report.x_mm = INT32_MIN;
+    bad[6].as.request.radius_mm = -1;
+    bad[7].as.request.y_mm = INT32_MIN;
+    bad[8].as.request.sender_x_mm = INT32_MAX;
+    for (uint8_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        encode(&bad[i]);
+        TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
+    }
+}
+
+static void unknown_kinds_are_not_encoded(void)
+{
+    struct mh_message message = example(MH_MESSAGE_BEACON);
+    message.kind = MH_MESSAGE_KINDS;
+    length = 99;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_wire_encode(&message, frame, &length));
+    TEST_ASSERT_EQUAL(99, length);
+}
+
+static void a_measurement_survives_its_report(void)
+{
+    const struct mh_measurement measurement = {.node = 0xFFFFFFFEu,
+                                               .place = {1, -2, 3},
+                                               .time = 0xFFFFFFFFu,
+                                               .value = -4,
+                                               .increment = 5,
+                                               .flags = MH_MEASUREMENT_HAS_INCREMENT | MH_MEASUREMENT_ASKED,
+                                               .target = 6};
+    mh_report_t report;
+    struct mh_measurement back;
+    mh_report_from_measurement(&measurement, &report);
+    mh_report_to_measurement(&report, &back);
+    TEST_ASSERT_EQUAL_INT32(-2, report.sender);
+    TEST_ASSERT_EQUAL_UINT8(0, report.hops);
+    TEST_ASSERT_EQUAL_UINT32(measurement.node, back.node);
+    TEST_ASSERT_EQUAL_INT32(-2, back.place.y_mm);
+    TEST_ASSERT_EQUAL_INT32(3, back.place.z_mm);
+    TEST_ASSERT_EQUAL_UINT32(measurement.time, back.time);
+    TEST_ASSERT_EQUAL_INT32(-4, back.value);
+    TEST_ASSERT_EQUAL_INT32(5, back.increment);
+    TEST_ASSERT_EQUAL_UINT8(3, back.flags);
+    TEST_ASSERT_EQUAL_UINT8(6, back.target);
+}
+
+/* Random bytes behind a right fingerprint and a right check sum: whatever is accepted encodes to the same bytes. */
+static void any_bytes_are_safe(void)
+{
+    uint32_t random = 1;
+    uint16_t accepted = 0;
+    for (uint16_t trial = 0; trial < 300; trial++) {
+        const struct mh_message message = example((enum mh_message_kind)(trial % MH_MESSAGE_KINDS));
+        encode(&message);
+        for (size_t i = 8; i < length - 2; i++) {
+            random = random * 1664525u + 1013904223u;
+            frame[i] = random >> 31 ? (uint8_t)(random >> 16) : frame[i];
+        }
+        seal(length - 2);
+        if (mh_wire_decode(frame, length, &decoded) == MH_OK) {
+            uint8_t again[MH_FRAME_MAX];
+            size_t again_length;
+            TEST_ASSERT_EQUAL(MH_OK, mh_wire_encode(&decoded, again, &again_length));
+            TEST_ASSERT_EQUAL(length, again_length);
+            TEST_ASSERT_EQUAL_MEMORY(frame, again, length);
+            accepted++;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(5, accepted);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(check_sum_of_the_catalogue);
+    RUN_TEST(check_sum_equals_the_division_bit_by_bit);
+    RUN_TEST(every_kind_makes_the_round_trip);
+    RUN_TEST(every_single_bit_counts);
+    RUN_TEST(every_truncation_is_refused);
+    RUN_TEST(a_sound_frame_of_wrong_length_is_corrupt);
+    RUN_TEST(an_unknown_type_is_told_apart);
+    RUN_TEST(fields_that_nobody_writes_are_corrupt);
+    RUN_TEST(unknown_kinds_are_not_encoded);
+    RUN_TEST(a_measurement_survives_its_report);
+    RUN_TEST(any_bytes_are_safe);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}
