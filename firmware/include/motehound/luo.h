@@ -1,7 +1,7 @@
 /* The tracker `luo`: Algorithm 1 of Luo, Chai and Yang, "Mobile diffusion source tracking in wireless sensor networks".
  *
- * One pre-estimate of position and arrival time a sampling instant by bound-constrained least squares, Eq. (10), or optionally the
- * nonlinear problem (9) started from it, then a Sage-Husa filter on the sequence of positions (Appendix 2).
+ * One pre-estimate of position and arrival time a sampling instant by bound-constrained least squares, Eq. (10), or optionally by
+ * the nonlinear problem (9), then a Sage-Husa filter on the sequence of positions (Appendix 2).
  *
  * Measurements are concentrations. Until the first position every node with a value above chi takes part, afterwards every node with
  * an increment, Eq. (13), of at least chi; a measurement without MH_MEASUREMENT_HAS_INCREMENT then has no part. step() gives
@@ -23,10 +23,12 @@ struct mh_luo_config {
     mh_real chi;                       /* selection threshold on concentration, g/m2, 0 to 2000; nominal 0.2 */
     mh_real forgetting;                /* b of the Sage-Husa weight, 0 < b < 1; nominal 0.97 */
     struct mh_sage_husa_config filter; /* start values and floors, m2; nominal: mh_sage_husa_config_default */
-    bool nonlinear;                    /* solve Eq. (9), started from the answer of (10); nominal false */
+    bool
+        nonlinear; /* solve Eq. (9), started from the answer of (10) and from the reference node, the better one taken; nominal false */
     bool stop_outside; /* end for good once the track has left `region` after having been well inside; nominal false */
-    struct mh_region region; /* used with stop_outside only; nominal 80 m x 80 m from the origin of the field */
-    int32_t inside_mm;       /* "well inside": this far from every border, 0 to 1e9; nominal 5000 */
+    struct mh_region
+        region; /* used with stop_outside only; each within +- 1e9; nominal 80 m x 80 m from the origin of the field */
+    int32_t inside_mm; /* "well inside": this far from every border, 0 to 1e9; nominal 5000 */
 };
 
 /* The state, in the header so that it can be allocated statically; its members are the tracker's own. */

@@ -2,7 +2,7 @@
  *
  * Two ways. The linear fit, Eq. (10), takes logarithms and the difference of every equation with a reference node's, which leaves a
  * linear least-squares problem for position and age under 0 <= age <= age_max; it is solved exactly. The nonlinear fit,
- * Eq. (9), least squares of the concentrations themselves under the same bound, is iterated from the linear answer.
+ * Eq. (9), least squares of the concentrations themselves under the same bound, is iterated from a start such as the linear answer.
  * Neither keeps the concentrations: they are fed one by one, for the nonlinear fit once a pass, so memory does not grow with them.
  *
  *     struct mh_puff_linear linear;
@@ -11,7 +11,7 @@
  *     mh_puff_linear_solve(&linear, age_max, &answer);
  *
  *     struct mh_puff_nonlinear nonlinear;
- *     mh_puff_nonlinear_begin(&nonlinear, diffusion, &answer.puff, age_max);
+ *     mh_puff_nonlinear_begin(&nonlinear, diffusion, &samples[largest], answer.puff.position, answer.puff.age, age_max);
  *     do {
  *         for (k = 0; k < count; k++) mh_puff_nonlinear_add(&nonlinear, &samples[k]);
  *     } while (mh_puff_nonlinear_advance(&nonlinear, &answer) == MH_NONE);
@@ -56,5 +56,33 @@ enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_pu
  * determine the position for a given age but not the age, the age is age_max. Errors: MH_ERR_ARGUMENT (age_max < 0 or NaN),
  * MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN, the reference included), MH_ERR_SINGULAR (nodes on one line). */
 enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real age_max, struct mh_puff_answer *answer);
+
+/* Least age of the nonlinear fit, as a share of age_max: at age 0 Eq. (4) has no value. */
+#define MH_PUFF_AGE_SHARE_MIN 1e-3f
+
+/* Eq. (9), by Levenberg-Marquardt in position, logarithm of the mass and age. A step moves at most the width of the puff
+ * sqrt(4 D age), changes the mass by a factor of at most e and the age by at most a factor of 2, and never leaves the bounds. */
+struct mh_puff_nonlinear {
+    mh_real diffusion, age_min, age_max;
+    struct mh_puff trial, best;
+    struct mh_least_squares trial_equations, best_equations; /* linearised there */
+    mh_real cost;                                            /* of best: sum of the squared residuals, (g/m2)^2 */
+    mh_real damping;
+    uint8_t passes; /* over the samples so far */
+};
+
+/* Begin at `position` and `age` (put within the bounds), with the mass that explains `reference`, the sample with the largest
+ * concentration. Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (diffusion, age_max or the concentration not positive). */
+enum mh_status mh_puff_nonlinear_begin(struct mh_puff_nonlinear *fit, mh_real diffusion,
+                                       const struct mh_puff_sample *reference, struct mh_vec2 position, mh_real age,
+                                       mh_real age_max);
+
+/* Take one sample of a pass, in any order. Cost: one exponential, four square roots. Errors: as mh_puff_linear_add. */
+enum mh_status mh_puff_nonlinear_add(struct mh_puff_nonlinear *fit, const struct mh_puff_sample *sample);
+
+/* A pass is complete. MH_NONE: another one is wanted, with the same samples; at most 24 in all. MH_OK: `answer` and fit->cost hold the best
+ * puff found; its bound is low at MH_PUFF_AGE_SHARE_MIN age_max. Errors: MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN),
+ * MH_ERR_SINGULAR (at the start the samples do not determine the puff). */
+enum mh_status mh_puff_nonlinear_advance(struct mh_puff_nonlinear *fit, struct mh_puff_answer *answer);
 
 #endif

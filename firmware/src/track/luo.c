@@ -2,6 +2,8 @@
 
 #include "motehound/puff_fit.h"
 
+#define PLACE_MAX_MM 1000000000
+
 void mh_luo_config_default(struct mh_luo_config *config)
 {
     const struct mh_luo_config nominal = {
@@ -15,6 +17,8 @@ void mh_luo_config_default(struct mh_luo_config *config)
     mh_sage_husa_config_default(&config->filter);
 }
 
+static bool is_coordinate(int32_t mm) { return mm >= -PLACE_MAX_MM && mm <= PLACE_MAX_MM; }
+
 static enum mh_status init(void *state, const void *config, mh_tick interval)
 {
     struct mh_luo *luo = state;
@@ -24,7 +28,11 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     }
     /* written so that NaN fails */
     if (!(c->diffusion_m2ps >= 1e-6f && c->diffusion_m2ps <= 1e3f) || !(c->chi >= 0 && c->chi <= 2000.0f) ||
-        !(c->forgetting > 0 && c->forgetting < 1) || c->inside_mm < 0 || c->inside_mm > 1000000000) {
+        !(c->forgetting > 0 && c->forgetting < 1) || c->inside_mm < 0 || c->inside_mm > PLACE_MAX_MM) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!is_coordinate(c->region.x_min_mm) || !is_coordinate(c->region.x_max_mm) ||
+        !is_coordinate(c->region.y_min_mm) || !is_coordinate(c->region.y_max_mm)) {
         return MH_ERR_ARGUMENT;
     }
     struct mh_sage_husa x;
@@ -53,54 +61,97 @@ static mh_q20 selected(const struct mh_luo *luo, const struct mh_measurement *me
     return known && measurement->increment > 0 && measurement->increment >= luo->threshold ? measurement->increment : 0;
 }
 
-/* The reference node: largest concentration, of equals the lowest node. NULL if no measurement takes part. */
-static const struct mh_measurement *find_reference(const struct mh_luo *luo, const struct mh_measurement *measurements,
-                                                   size_t count)
+/* The measurements of one sampling instant. */
+struct instant {
+    const struct mh_luo *luo;
+    const struct mh_measurement *measurements;
+    size_t count;
+    const struct mh_measurement
+        *reference; /* largest concentration, of equals the lowest node; NULL if none takes part */
+};
+
+static struct instant gather(const struct mh_luo *luo, const struct mh_measurement *measurements, size_t count)
 {
-    const struct mh_measurement *best = NULL;
+    struct instant instant = {luo, measurements, count, NULL};
     mh_q20 largest = 0;
     for (size_t i = 0; i < count; i++) {
         const mh_q20 c = selected(luo, &measurements[i]);
-        if (c > largest || (c > 0 && c == largest && measurements[i].node < best->node)) {
-            best = &measurements[i];
+        if (c > largest || (c > 0 && c == largest && measurements[i].node < instant.reference->node)) {
+            instant.reference = &measurements[i];
             largest = c;
         }
     }
-    return best;
+    return instant;
 }
 
-static struct mh_puff_sample sample_of(const struct mh_luo *luo, const struct mh_measurement *measurement,
-                                       const struct mh_place *origin)
+/* Relative to the reference node, so that the fit has all its digits however far the source has gone. */
+static struct mh_puff_sample sample_of(const struct instant *instant, const struct mh_measurement *measurement)
 {
-    const struct mh_puff_sample sample = {mh_place_relative(&measurement->place, origin),
-                                          mh_q20_to_real(selected(luo, measurement))};
+    const struct mh_puff_sample sample = {mh_place_relative(&measurement->place, &instant->reference->place),
+                                          mh_q20_to_real(selected(instant->luo, measurement))};
     return sample;
 }
 
-/* Step 4: the pre-estimate. Errors: MH_NONE. `used` is the number of measurements that took part. */
-static enum mh_status locate(const struct mh_luo *luo, const struct mh_measurement *measurements, size_t count,
-                             const struct mh_measurement *reference, const struct mh_place *origin, mh_real age_max,
-                             struct mh_puff_answer *answer, uint16_t *used)
+/* Eq. (10). Errors: those of the fit. `used` is the number of measurements that took part. */
+static enum mh_status fit_linear(const struct instant *instant, mh_real age_max, struct mh_puff_answer *answer,
+                                 uint16_t *used)
 {
     struct mh_puff_linear fit;
-    const struct mh_puff_sample largest = sample_of(luo, reference, origin);
-    if (mh_puff_linear_begin(&fit, luo->config.diffusion_m2ps, &largest) != MH_OK) {
-        return MH_NONE;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const struct mh_puff_sample sample = sample_of(luo, &measurements[i], origin);
-        if (sample.concentration > 0 && mh_puff_linear_add(&fit, &sample) != MH_OK) {
-            return MH_NONE;
+    const struct mh_puff_sample reference = sample_of(instant, instant->reference);
+    enum mh_status status = mh_puff_linear_begin(&fit, instant->luo->config.diffusion_m2ps, &reference);
+    for (size_t i = 0; i < instant->count && status == MH_OK; i++) {
+        const struct mh_puff_sample sample = sample_of(instant, &instant->measurements[i]);
+        if (sample.concentration > 0) {
+            status = mh_puff_linear_add(&fit, &sample);
         }
     }
     *used = fit.equations.rows;
-    return mh_puff_linear_solve(&fit, age_max, answer) == MH_OK ? MH_OK : MH_NONE;
+    return status == MH_OK ? mh_puff_linear_solve(&fit, age_max, answer) : status;
 }
 
-static bool same(struct mh_vec2 a, struct mh_vec2 b)
+/* Eq. (9) from one start. Leaves `answer` and `cost` alone unless it finds a puff of less cost. */
+static void fit_nonlinear(const struct instant *instant, struct mh_vec2 position, mh_real age, mh_real age_max,
+                          struct mh_puff_answer *answer, mh_real *cost)
 {
-    return a.x == b.x && a.y == b.y;
+    struct mh_puff_nonlinear fit;
+    struct mh_puff_answer found;
+    const struct mh_puff_sample reference = sample_of(instant, instant->reference);
+    enum mh_status status =
+        mh_puff_nonlinear_begin(&fit, instant->luo->config.diffusion_m2ps, &reference, position, age, age_max);
+    if (status != MH_OK) {
+        return;
+    }
+    do {
+        for (size_t i = 0; i < instant->count; i++) {
+            const struct mh_puff_sample sample = sample_of(instant, &instant->measurements[i]);
+            if (sample.concentration > 0 && mh_puff_nonlinear_add(&fit, &sample) != MH_OK) {
+                return;
+            }
+        }
+        status = mh_puff_nonlinear_advance(&fit, &found);
+    } while (status == MH_NONE);
+    if (status == MH_OK && fit.cost < *cost) {
+        *answer = found;
+        *cost = fit.cost;
+    }
 }
+
+/* Step 4: the pre-estimate, relative to the reference node. */
+static enum mh_status locate(const struct instant *instant, mh_real age_max, struct mh_puff_answer *answer,
+                             uint16_t *used)
+{
+    const enum mh_status status = fit_linear(instant, age_max, answer, used);
+    if (status == MH_OK && instant->luo->config.nonlinear) {
+        const struct mh_puff linear = answer->puff;
+        const struct mh_vec2 peak = {0, 0};
+        mh_real cost = 3e38f;
+        fit_nonlinear(instant, linear.position, linear.age, age_max, answer, &cost);
+        fit_nonlinear(instant, peak, 0.5f * instant->luo->interval_s, age_max, answer, &cost);
+    }
+    return status;
+}
+
+static bool same(struct mh_vec2 a, struct mh_vec2 b) { return a.x == b.x && a.y == b.y; }
 
 /* Step 6: true if the track ends here. A source may enter the field at its border, so the rule waits until the track was inside. */
 static bool leaves(struct mh_luo *luo, struct mh_vec2 position)
@@ -167,17 +218,24 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     }
     luo->stepped = true;
     luo->time = time;
-    const struct mh_measurement *reference = luo->ended ? NULL : find_reference(luo, measurements, count);
-    if (reference == NULL) {
+    if (luo->ended) {
         return MH_NONE;
     }
-    const struct mh_place origin = luo->count == 0 ? reference->place : luo->origin;
+    const struct instant instant = gather(luo, measurements, count);
+    if (instant.reference == NULL) {
+        return MH_NONE;
+    }
     const mh_real age_max = luo->age + (mh_real)luo->since / (mh_real)MH_TICKS_PER_S;
     struct mh_puff_answer answer;
     uint16_t used;
+    if (locate(&instant, age_max, &answer, &used) != MH_OK) {
+        return MH_NONE;
+    }
+    const struct mh_place origin = luo->count == 0 ? instant.reference->place : luo->origin;
+    const struct mh_vec2 reference = mh_place_relative(&instant.reference->place, &origin);
+    const struct mh_vec2 raw = {reference.x + answer.puff.position.x, reference.y + answer.puff.position.y};
     bool filtered;
-    if (locate(luo, measurements, count, reference, &origin, age_max, &answer, &used) != MH_OK ||
-        take(luo, answer.puff.position, age_max - answer.puff.age, &filtered) != MH_OK) {
+    if (take(luo, raw, age_max - answer.puff.age, &filtered) != MH_OK) {
         return MH_NONE;
     }
     luo->origin = origin;
@@ -193,7 +251,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         .time = time,
         .position = position,
         .velocity = luo->velocity,
-        .raw = answer.puff.position,
+        .raw = raw,
         .age = answer.puff.age,
         .measurements = used,
         .flags = (uint8_t)((luo->count == 1 ? MH_ESTIMATE_STARTED : 0) | (filtered ? MH_ESTIMATE_FILTERED : 0) |

@@ -1,0 +1,200 @@
+#include "motehound/puff_fit.h"
+
+#define EXPONENT_MAX 20.0f
+
+static enum mh_status check(const struct mh_puff_sample *sample)
+{
+    if (!mh_finite(sample->position.x) || !mh_finite(sample->position.y) || !mh_finite(sample->concentration)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    return sample->concentration > 0 ? MH_OK : MH_ERR_RANGE;
+}
+
+/* Eq. (A2) of one sample: the mass that gives it its concentration from a puff of `age` at `position`. The exponent is limited so
+ * that a puff too far away for its age gives a large mass, not infinity. */
+static mh_real mass_through(const struct mh_puff_sample *sample, mh_real diffusion, struct mh_vec2 position,
+                            mh_real age)
+{
+    const mh_real spread = 4.0f * diffusion * age;
+    const mh_real dx = sample->position.x - position.x;
+    const mh_real dy = sample->position.y - position.y;
+    const mh_real exponent = spread > 0 ? (dx * dx + dy * dy) / spread : 0;
+    return sample->concentration * MH_PI * spread * mh_exp(mh_min(exponent, EXPONENT_MAX));
+}
+
+enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusion,
+                                    const struct mh_puff_sample *reference)
+{
+    const enum mh_status status = check(reference);
+    if (status != MH_OK) {
+        return status;
+    }
+    if (!mh_finite(diffusion)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    if (!(diffusion > 0)) {
+        return MH_ERR_RANGE;
+    }
+    fit->diffusion = diffusion;
+    fit->reference = *reference;
+    mh_least_squares_begin(&fit->equations, 3);
+    return MH_OK;
+}
+
+/* Eq. (A2) of the sample minus that of the reference, with the position relative to the reference and the age s = t - tau for unknowns:
+ * 2 dx e + 2 dy n + 4 D ln(c_Q / c_k) s = dx^2 + dy^2. */
+enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_puff_sample *sample)
+{
+    const enum mh_status status = check(sample);
+    if (status != MH_OK) {
+        return status;
+    }
+    const mh_real dx = sample->position.x - fit->reference.position.x;
+    const mh_real dy = sample->position.y - fit->reference.position.y;
+    const mh_real logarithm = mh_log(fit->reference.concentration / sample->concentration);
+    const mh_real row[3] = {2.0f * dx, 2.0f * dy, 4.0f * fit->diffusion * logarithm};
+    return mh_least_squares_add(&fit->equations, row, dx * dx + dy * dy);
+}
+
+enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real age_max, struct mh_puff_answer *answer)
+{
+    if (fit->equations.rows < MH_PUFF_SAMPLES_MIN) {
+        return MH_ERR_TOO_FEW;
+    }
+    mh_real z[3];
+    enum mh_bound bound;
+    const enum mh_status status = mh_least_squares_solve(&fit->equations, 0, age_max, z, &bound);
+    if (status != MH_OK) {
+        return status;
+    }
+    const struct mh_vec2 position = {fit->reference.position.x + z[0], fit->reference.position.y + z[1]};
+    const mh_real mass = mass_through(&fit->reference, fit->diffusion, position, z[2]);
+    const struct mh_puff_answer solved = {{position, z[2], mass}, bound};
+    *answer = solved;
+    return MH_OK;
+}
+
+#define PASSES_MAX 24
+#define DAMPING_BEGIN 1e-3f
+#define DAMPING_MAX 1e4f
+#define CONVERGED 1e-4f /* share of the cost that the last step still took off */
+
+enum mh_status mh_puff_nonlinear_begin(struct mh_puff_nonlinear *fit, mh_real diffusion,
+                                       const struct mh_puff_sample *reference, struct mh_vec2 position, mh_real age,
+                                       mh_real age_max)
+{
+    const enum mh_status status = check(reference);
+    if (status != MH_OK) {
+        return status;
+    }
+    if (!mh_finite(diffusion) || !mh_finite(position.x) || !mh_finite(position.y) || !mh_finite(age) ||
+        !mh_finite(age_max)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    if (!(diffusion > 0) || !(age_max > 0)) {
+        return MH_ERR_RANGE;
+    }
+    fit->diffusion = diffusion;
+    fit->age_min = MH_PUFF_AGE_SHARE_MIN * age_max;
+    fit->age_max = age_max;
+    fit->damping = DAMPING_BEGIN;
+    fit->passes = 0;
+    fit->trial.position = position;
+    fit->trial.age = mh_clamp(age, fit->age_min, age_max);
+    fit->trial.mass = mass_through(reference, diffusion, position, fit->trial.age);
+    mh_least_squares_begin(&fit->trial_equations, 4);
+    return MH_OK;
+}
+
+/* The linearised equation: slope . step = c_k - c(trial). Age comes last because it is the one with bounds. */
+enum mh_status mh_puff_nonlinear_add(struct mh_puff_nonlinear *fit, const struct mh_puff_sample *sample)
+{
+    const enum mh_status status = check(sample);
+    if (status != MH_OK) {
+        return status;
+    }
+    struct mh_puff_slope slope;
+    const mh_real c = mh_puff_concentration(&fit->trial, fit->diffusion, sample->position, &slope);
+    const mh_real row[4] = {slope.x, slope.y, slope.log_mass, slope.age};
+    return mh_least_squares_add(&fit->trial_equations, row, sample->concentration - c);
+}
+
+/* Sum of the squared right sides, which the rotations keep. */
+static mh_real cost_of(const struct mh_least_squares *equations)
+{
+    mh_real sum = equations->residual * equations->residual;
+    for (uint8_t i = 0; i < equations->unknowns; i++) {
+        const mh_real d = equations->r[i][equations->unknowns];
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* A Levenberg-Marquardt step from the best puff, at most as far as its neighbourhood looks like the linearised one. */
+static enum mh_status damped_step(struct mh_puff_nonlinear *fit)
+{
+    struct mh_least_squares damped = fit->best_equations;
+    for (uint8_t k = 0; k < 4; k++) {
+        mh_real column = 0;
+        for (uint8_t i = 0; i <= k; i++) {
+            column += fit->best_equations.r[i][k] * fit->best_equations.r[i][k];
+        }
+        mh_real row[4] = {0, 0, 0, 0};
+        row[k] = mh_sqrt(fit->damping * column);
+        const enum mh_status status = mh_least_squares_add(&damped, row, 0);
+        if (status != MH_OK) {
+            return status;
+        }
+    }
+    const struct mh_puff *best = &fit->best;
+    mh_real z[4];
+    enum mh_bound bound;
+    const enum mh_status status = mh_least_squares_solve(&damped, mh_max(fit->age_min - best->age, -0.5f * best->age),
+                                                         mh_min(fit->age_max - best->age, best->age), z, &bound);
+    if (status != MH_OK) {
+        return status;
+    }
+    const mh_real far = mh_sqrt((z[0] * z[0] + z[1] * z[1]) / (4.0f * fit->diffusion * best->age));
+    const mh_real part = 1.0f / mh_max(1.0f, mh_max(far, mh_abs(z[2])));
+    fit->trial.position.x = best->position.x + part * z[0];
+    fit->trial.position.y = best->position.y + part * z[1];
+    fit->trial.mass = mh_clamp(best->mass * mh_exp(part * z[2]), 1e-12f, 1e12f);
+    fit->trial.age = mh_clamp(best->age + part * z[3], fit->age_min, fit->age_max);
+    mh_least_squares_begin(&fit->trial_equations, 4);
+    return MH_OK;
+}
+
+enum mh_status mh_puff_nonlinear_advance(struct mh_puff_nonlinear *fit, struct mh_puff_answer *answer)
+{
+    if (fit->trial_equations.rows < MH_PUFF_SAMPLES_MIN) {
+        return MH_ERR_TOO_FEW;
+    }
+    const mh_real cost = cost_of(&fit->trial_equations);
+    const bool first = fit->passes == 0;
+    const bool better = first || cost < fit->cost;
+    bool done = false;
+    if (better) {
+        done = !first && fit->cost - cost <= CONVERGED * fit->cost;
+        fit->best = fit->trial;
+        fit->best_equations = fit->trial_equations;
+        fit->cost = cost;
+        fit->damping *= 0.2f;
+    } else {
+        fit->damping *= 8.0f;
+    }
+    fit->passes++;
+    if (!done && fit->passes < PASSES_MAX && fit->damping <= DAMPING_MAX && cost > 0) {
+        const enum mh_status status = damped_step(fit);
+        if (status == MH_OK) {
+            return MH_NONE;
+        }
+        if (first) {
+            return status;
+        }
+    }
+    answer->puff = fit->best;
+    answer->bound = fit->best.age >= 0.999999f * fit->age_max   ? MH_BOUND_HIGH
+                    : fit->best.age <= 1.000001f * fit->age_min ? MH_BOUND_LOW
+                                                                : MH_BOUND_NONE;
+    return MH_OK;
+}
