@@ -44,14 +44,14 @@ struct recording {
  * for the file in errors. Cost: O(n log nodes). Returns 0, or -1 with one line in `error`. */
 int recording_parse_nodes(const char *text, size_t length, const char *name, struct recording *recording, char *error,
                           size_t error_size);
-int recording_parse_readings(const char *text, size_t length, const char *name, struct recording *recording, char *error,
-                             size_t error_size);
+int recording_parse_readings(const char *text, size_t length, const char *name, struct recording *recording,
+                             char *error, size_t error_size);
 int recording_parse_truth(const char *text, size_t length, const char *name, struct recording *recording, char *error,
                           size_t error_size);
 
 /* The three from files; `truth_path` may be NULL. Returns 0, or -1 with one line in `error` and nothing to free. */
-int recording_load(const char *nodes_path, const char *readings_path, const char *truth_path, struct recording *recording,
-                   char *error, size_t error_size);
+int recording_load(const char *nodes_path, const char *readings_path, const char *truth_path,
+                   struct recording *recording, char *error, size_t error_size);
 
 /* Only nodes.csv, as network.file wants it. */
 int recording_load_nodes(const char *nodes_path, struct recording *recording, char *error, size_t error_size);

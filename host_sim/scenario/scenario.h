@@ -38,40 +38,40 @@ struct scenario {
         double release_gps;       /* mean release rate mu */
         double release_variation; /* mu(t) = release (1 + variation sin(2 pi t / release_period)), 0 to 0.95 */
         double release_period_s;
-        double diffusion_m2ps;    /* D of the field (the tracker has its own) */
+        double diffusion_m2ps; /* D of the field (the tracker has its own) */
     } source;
     struct {
         int64_t nodes;
         enum layout_kind layout;
-        char *file;               /* nodes.csv of LAYOUT_FILE, relative to the scenario */
+        char *file; /* nodes.csv of LAYOUT_FILE, relative to the scenario */
         double sink_x_m, sink_y_m;
-        char *protocol;           /* `collection` */
+        char *protocol; /* `collection` */
     } network;
     struct {
-        double interval_s;     /* between samples, T */
-        double relative_noise; /* sd as a share of the reading */
-        double additive_noise; /* sd, g/m2 */
-        int64_t adc_bits;      /* 0: an ideal converter */
-        double full_scale;     /* of the converter, g/m2 */
-        double loss;           /* probability that a reading never comes */
+        double interval_s;               /* between samples, T */
+        double relative_noise;           /* sd as a share of the reading */
+        double additive_noise;           /* sd, g/m2 */
+        int64_t adc_bits;                /* 0: an ideal converter */
+        double full_scale;               /* of the converter, g/m2 */
+        double loss;                     /* probability that a reading never comes */
         double outage_start_s, outage_s; /* no reading of any node comes in this time; 0, 0 for none */
     } sensor;
     struct {
-        double range_m;       /* unit disc */
-        double delay_s;       /* of one hop, besides the air time */
-        double bitrate_bps;   /* gives the air time */
-        double loss;          /* probability that a frame is lost, each receiver independently */
+        double range_m;     /* unit disc */
+        double delay_s;     /* of one hop, besides the air time */
+        double bitrate_bps; /* gives the air time */
+        double loss;        /* probability that a frame is lost, each receiver independently */
     } radio;
     struct {
-        char *name;           /* diffusion, luo or range */
+        char *name; /* diffusion, luo or range */
         double diffusion_m2ps;
         double chi;
-        double release_gps;   /* diffusion: expected release rate */
-        double additive_sd, relative_sd; /* diffusion: assumed noise */
-        double forgetting;    /* luo */
-        bool nonlinear;       /* luo */
+        double release_gps;                                /* diffusion: expected release rate */
+        double additive_sd, relative_sd;                   /* diffusion: assumed noise */
+        double forgetting;                                 /* luo */
+        bool nonlinear;                                    /* luo */
         double range_sd_m, acceleration_sd_mps2, height_m; /* range */
-        double window_s;      /* reports are waited for this long after a sampling instant; 0: half the interval */
+        double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */
     } tracker;
     struct {
         int64_t skip_first;   /* estimates of each track left out of the error metrics */
@@ -79,7 +79,7 @@ struct scenario {
         int64_t lost_samples; /* ... in so many successive samples */
     } metrics;
     struct {
-        char *key;            /* what `motehound run --sweep` varies; empty for nothing */
+        char *key; /* what `motehound run --sweep` varies; empty for nothing */
         char **values;
         unsigned values_count;
     } sweep;
@@ -96,8 +96,7 @@ void scenario_free(struct scenario *scenario);
 int scenario_parse(const char *yaml, size_t length, const char *name, struct scenario *scenario, char *error,
                    size_t error_size);
 
-/* scenario_init, then the file at `path`. A relative network.file is taken from the file's own folder. Returns 0, or -1 with one
- * line in `error` and nothing to free. */
+/* scenario_parse of the file at `path`. A relative network.file is taken from the scenario file's own folder. */
 int scenario_load(const char *path, struct scenario *scenario, char *error, size_t error_size);
 
 /* Set one key from text, as --set does: numbers, words, `source.points` as `x,y[,factor]; ...`, `sweep.values` as `a, b, ...`. An
@@ -107,5 +106,8 @@ int scenario_set(struct scenario *scenario, const char *key, const char *value, 
 /* What only holds between keys: at least four nodes, a path with its points, an outage inside the run, the sink in the field.
  * Returns 0, or -1 with one line in `error`; `name` stands for the file. */
 int scenario_check(const struct scenario *scenario, const char *name, char *error, size_t error_size);
+
+/* The part of it that a replay needs, where there is no source and no deployment. */
+int scenario_check_tracking(const struct scenario *scenario, const char *name, char *error, size_t error_size);
 
 #endif

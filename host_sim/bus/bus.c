@@ -1,0 +1,214 @@
+#include "bus/bus.h"
+
+#include "scenario/text.h"
+
+#include "motehound_frame_t.h"
+#include "motehound_node_t.h"
+#include "motehound_run_begin_t.h"
+#include "motehound_run_end_t.h"
+#include "motehound_track_t.h"
+#include "motehound_truth_t.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void publish(struct bus *bus, const char *channel, double time_s, void *bytes, int length)
+{
+    bus->time_s = time_s;
+    bool sound = lcm_publish(bus->lcm, channel, bytes, (unsigned)length) == 0;
+    while (sound && lcm_handle_timeout(bus->lcm, 0) > 0) {}
+    if (sound && bus->log != NULL) {
+        lcm_eventlog_event_t event = {
+            .timestamp = (int64_t)llround(time_s * 1e6),
+            .channellen = (int32_t)strlen(channel),
+            .datalen = length,
+            .channel = (char *)channel,
+            .data = bytes,
+        };
+        sound = lcm_eventlog_write_event(bus->log, &event) == 0;
+    }
+    /* a network that drops messages is no failure of the run */
+    if (bus->outside != NULL) {
+        lcm_publish(bus->outside, channel, bytes, (unsigned)length);
+    }
+    bus->failed = bus->failed || !sound;
+}
+
+/* Encode a message of a generated type and publish it. Names are short and all other fields fixed, so 1024 bytes hold any. */
+#define PUBLISH(bus, channel, type, message)                                                                           \
+    do {                                                                                                               \
+        uint8_t encoded[1024];                                                                                         \
+        const int encoded_length = type##_encode(encoded, 0, sizeof encoded, &(message));                              \
+        if (encoded_length < 0) {                                                                                      \
+            (bus)->failed = true;                                                                                      \
+        } else {                                                                                                       \
+            publish(bus, channel, (message).time_s, encoded, encoded_length);                                          \
+        }                                                                                                              \
+    } while (0)
+
+int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, char *error, size_t error_size)
+{
+    *bus = (struct bus){.lcm = lcm_create("memq://"), .outside = outside, .run = run};
+    if (bus->lcm == NULL) {
+        return fail(error, error_size, "memq://: cannot create an LCM");
+    }
+    if (log_path != NULL && (bus->log = lcm_eventlog_create(log_path, "w")) == NULL) {
+        lcm_destroy(bus->lcm);
+        return fail(error, error_size, "%s: cannot write", log_path);
+    }
+    return 0;
+}
+
+int bus_close(struct bus *bus, char *error, size_t error_size)
+{
+    if (bus->log != NULL) {
+        bus->failed = fflush(bus->log->f) != 0 || ferror(bus->log->f) || bus->failed;
+        lcm_eventlog_destroy(bus->log);
+    }
+    lcm_destroy(bus->lcm);
+    return bus->failed
+               ? fail(error, error_size, "events.lcm: a message of run %ld could not be written", (long)bus->run)
+               : 0;
+}
+
+static void on_node(void *context, mh_node_id id, const struct mh_place *place)
+{
+    struct bus *bus = context;
+    const motehound_node_t message = {.time_s = bus->time_s,
+                                      .run = bus->run,
+                                      .node = (int32_t)id,
+                                      .x_m = place->x_mm * 1e-3,
+                                      .y_m = place->y_mm * 1e-3,
+                                      .z_m = place->z_mm * 1e-3};
+    PUBLISH(bus, BUS_NODE, motehound_node_t, message);
+}
+
+static void on_truth(void *context, const struct truth *truth)
+{
+    struct bus *bus = context;
+    const motehound_truth_t message = {
+        .time_s = truth->time_s, .run = bus->run, .present = truth->present, .x_m = truth->x_m, .y_m = truth->y_m};
+    PUBLISH(bus, BUS_TRUTH, motehound_truth_t, message);
+}
+
+static void on_frame(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
+                     size_t length)
+{
+    struct bus *bus = context;
+    if (length > MH_FRAME_MAX) {
+        bus->failed = true;
+        return;
+    }
+    motehound_frame_t message = {.time_s = time_s,
+                                 .run = bus->run,
+                                 .sender = (int32_t)sender,
+                                 .destination = (int32_t)destination,
+                                 .length = (int16_t)length};
+    memcpy(message.data, bytes, length);
+    PUBLISH(bus, BUS_FRAME, motehound_frame_t, message);
+}
+
+static void on_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
+                        const struct truth *at_arrival)
+{
+    struct bus *bus = context;
+    const double origin_x = estimate->origin.x_mm * 1e-3, origin_y = estimate->origin.y_mm * 1e-3;
+    const motehound_track_t message = {
+        .time_s = time_s,
+        .run = bus->run,
+        .target = estimate->target,
+        .x_m = origin_x + (double)estimate->position.x,
+        .y_m = origin_y + (double)estimate->position.y,
+        .vx_mps = (double)estimate->velocity.x,
+        .vy_mps = (double)estimate->velocity.y,
+        .cov_xx_m2 = (double)estimate->covariance.xx,
+        .cov_xy_m2 = (double)estimate->covariance.xy,
+        .cov_yy_m2 = (double)estimate->covariance.yy,
+        .raw_x_m = origin_x + (double)estimate->raw.x,
+        .raw_y_m = origin_y + (double)estimate->raw.y,
+        .arrival_s = time_s - (double)estimate->age,
+        .measurements = estimate->measurements,
+        .flags = estimate->flags,
+        .true_known = at_time != NULL && at_time->present,
+        .true_x_m = at_time != NULL ? at_time->x_m : 0,
+        .true_y_m = at_time != NULL ? at_time->y_m : 0,
+        .arrival_known = at_arrival != NULL && at_arrival->present,
+        .arrival_x_m = at_arrival != NULL ? at_arrival->x_m : 0,
+        .arrival_y_m = at_arrival != NULL ? at_arrival->y_m : 0,
+    };
+    PUBLISH(bus, BUS_TRACK, motehound_track_t, message);
+}
+
+struct observer bus_observer(struct bus *bus)
+{
+    const bool heard = bus->log != NULL || bus->outside != NULL;
+    return (struct observer){
+        .context = bus,
+        .node = heard || bus->run == 0 ? on_node : NULL,
+        .truth = on_truth,
+        .estimate = on_estimate,
+        .frame = heard ? on_frame : NULL,
+    };
+}
+
+void bus_begin(struct bus *bus, uint64_t seed, const char *scenario, const char *version)
+{
+    const motehound_run_begin_t message = {
+        .run = bus->run, .seed = (int64_t)seed, .scenario = (char *)scenario, .version = (char *)version};
+    PUBLISH(bus, BUS_RUN_BEGIN, motehound_run_begin_t, message);
+}
+
+void bus_end(struct bus *bus, const struct simulation_counters *counters)
+{
+    const motehound_run_end_t message = {
+        .time_s = bus->time_s,
+        .run = bus->run,
+        .events = (int64_t)counters->events,
+        .frames_sent_beacons = (int64_t)counters->frames_sent[MH_MESSAGE_BEACON],
+        .frames_sent_reports = (int64_t)counters->frames_sent[MH_MESSAGE_REPORT],
+        .frames_sent_requests = (int64_t)counters->frames_sent[MH_MESSAGE_REQUEST],
+        .frames_received = (int64_t)counters->frames_received,
+        .frames_lost = (int64_t)counters->frames_lost,
+        .readings = counters->motes.readings,
+        .readings_refused = counters->motes.readings_refused,
+        .reports = counters->motes.reports,
+        .reports_asked = counters->motes.reports_asked,
+        .reports_no_route = counters->motes.reports_no_route,
+        .measurements = counters->head.measurements,
+        .measurements_late = counters->head.late,
+        .measurements_overflowed = counters->head.overflowed,
+    };
+    PUBLISH(bus, BUS_RUN_END, motehound_run_end_t, message);
+}
+
+int bus_outside(const char *url, lcm_t **outside, char *error, size_t error_size)
+{
+    *outside = NULL;
+    if (strncmp(url, "memq://", 7) == 0) {
+        return 0;
+    }
+    fflush(stderr);
+    const int kept = dup(STDERR_FILENO);
+    const int nowhere = open("/dev/null", O_WRONLY);
+    if (kept >= 0 && nowhere >= 0) {
+        dup2(nowhere, STDERR_FILENO);
+    }
+    *outside = lcm_create(url);
+    fflush(stderr);
+    if (kept >= 0) {
+        dup2(kept, STDERR_FILENO);
+        close(kept);
+    }
+    if (nowhere >= 0) {
+        close(nowhere);
+    }
+    return *outside != NULL ? 0
+                            : fail(error, error_size,
+                                   "--bus %s: expected a URL that LCM can serve, such as "
+                                   "udpm://239.255.76.67:7667?ttl=0 (which needs a multicast route)",
+                                   url);
+}

@@ -1,0 +1,45 @@
+/* The bus of one run: what an observer of the simulation is told, as LCM messages (lcm_types/motehound_bus.lcm).
+ *
+ * Every message goes to the run's own in-memory LCM, to a log if there is one, and to an outside LCM if there is one. Subscribers
+ * on the run's own LCM are called before the observing function returns, so a recorder sees everything, in order, whatever the
+ * network outside does. Frames, and the nodes of runs after the first, are published only if there is a log or an outside. */
+#ifndef MOTEHOUND_SIM_BUS_H
+#define MOTEHOUND_SIM_BUS_H
+
+#include "simulation.h"
+
+#include <lcm/lcm.h>
+
+#define BUS_RUN_BEGIN "MOTEHOUND_RUN_BEGIN"
+#define BUS_NODE "MOTEHOUND_NODE"
+#define BUS_TRUTH "MOTEHOUND_TRUTH"
+#define BUS_FRAME "MOTEHOUND_FRAME"
+#define BUS_TRACK "MOTEHOUND_TRACK"
+#define BUS_RUN_END "MOTEHOUND_RUN_END"
+
+struct bus {
+    lcm_t *lcm;          /* memq://; subscribe here */
+    lcm_t *outside;      /* NULL or shared by all runs: LCM's publishing is thread-safe */
+    lcm_eventlog_t *log; /* NULL or a standard LCM log, its timestamps the simulated time in microseconds */
+    int32_t run;
+    double time_s; /* of the last message */
+    bool failed;   /* a message could not be made, delivered or logged */
+};
+
+/* `log_path` and `outside` may be NULL. Returns 0, or -1 with one line in `error`. */
+int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, char *error, size_t error_size);
+
+/* The observer that publishes on this bus. `bus` outlives it. */
+struct observer bus_observer(struct bus *bus);
+
+void bus_begin(struct bus *bus, uint64_t seed, const char *scenario, const char *version);
+void bus_end(struct bus *bus, const struct simulation_counters *counters);
+
+/* Returns 0, or -1 with one line in `error` if any message was lost. */
+int bus_close(struct bus *bus, char *error, size_t error_size);
+
+/* An LCM on `url` for bus_open's `outside`; *outside is NULL for memq://. LCM's own lines about a URL that it cannot serve are kept from
+ * standard error, so call it before there are threads. Returns 0, or -1 with one line in `error`. */
+int bus_outside(const char *url, lcm_t **outside, char *error, size_t error_size);
+
+#endif

@@ -1,0 +1,34 @@
+/* The commands of `motehound`. Each takes the words after its name and returns the exit status: 0, or 1 with one line in `error`. */
+#ifndef MOTEHOUND_SIM_COMMAND_H
+#define MOTEHOUND_SIM_COMMAND_H
+
+#include "cli/batch.h"
+
+enum { COMMAND_ERROR_SIZE = 5000 };
+
+struct command {
+    int argc;
+    char **argv;
+    const volatile sig_atomic_t *stop; /* nonzero once the user has interrupted */
+    char error[COMMAND_ERROR_SIZE];
+};
+
+int command_list(struct command *command);
+int command_run(struct command *command);
+int command_replay(struct command *command);
+
+/* What run and replay have in common: a batch into folder `out`, with progress on a terminal, and a table of results on standard
+ * output. `name` stands for the scenario. Returns as a command does. */
+struct session {
+    struct batch batch;
+    const char *name;
+    const char *out;
+    const char *bus_url;
+    bool log;
+};
+int session_execute(struct command *command, struct session *session);
+
+/* Apply one `key=value` of --set. Returns 0, or -1 with one line in command->error. */
+int command_set(struct command *command, struct scenario *scenario, const char *assignment);
+
+#endif

@@ -1,0 +1,211 @@
+/* motehound run: simulate a scenario. */
+#include "cli/command.h"
+#include "cli/options.h"
+#include "scenario/folder.h"
+#include "scenario/keys.h"
+#include "scenario/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char help[] =
+    "motehound run SCENARIO [--set key=value]... [--runs N] [--seed S] [--jobs J] [--out DIR] [--bus URL] [--log] "
+    "[--sweep]\n"
+    "\n"
+    "Simulates a network of motes. SCENARIO is a YAML file or a name of `motehound list`.\n"
+    "  --set key=value  change any key of the scenario (`motehound list --keys`); may be repeated\n"
+    "  --runs N         so many runs, each with its own deployment and noise; default 1\n"
+    "  --seed S         run r has seed S + r; default 0. The same seeds give the same bytes\n"
+    "  --jobs J         runs at the same time; default 1. Changes no byte of the results\n"
+    "  --out DIR        folder for the results; default out/NAME\n"
+    "  --bus URL        publish everything on this LCM bus too, such as udpm://239.255.76.67:7667?ttl=0;\n"
+    "                   default memq://, which stays within the process\n"
+    "  --log            also write events.lcm, all that went over the bus, for lcm-logplayer\n"
+    "  --sweep          do all runs for each value of the scenario's `sweep`, into DIR/VALUE\n"
+    "  --help           this text\n"
+    "\n"
+    "DIR gets summary.json, runs.csv, track.csv and nodes.csv; whole, or after an error or an interrupt not at all\n"
+    "(with --sweep: each DIR/VALUE).\n";
+
+struct run_options {
+    const char *scenario, *out, *bus_url;
+    uint64_t runs, seed, jobs;
+    bool log, sweep, help;
+};
+
+enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, HELP, RULES };
+
+static const struct option_rule rules[RULES] = {
+    [SET] = {"--set", true, true},    [RUNS] = {"--runs", true, false},    [SEED] = {"--seed", true, false},
+    [JOBS] = {"--jobs", true, false}, [OUT] = {"--out", true, false},      [BUS] = {"--bus", true, false},
+    [LOG] = {"--log", false, false},  [SWEEP] = {"--sweep", false, false}, [HELP] = {"--help", false, false},
+};
+
+/* All options but --set, whose values wait until the file has been read. */
+static int read_options(struct command *command, struct run_options *options)
+{
+    struct option_reader reader = {.argc = command->argc, .argv = command->argv, .rules = rules, .rule_count = RULES};
+    char *error = command->error;
+    size_t rule = 0;
+    const char *value = NULL;
+    *options = (struct run_options){.bus_url = "memq://", .runs = 1, .jobs = 1};
+    for (enum option_kind kind;
+         (kind = option_next(&reader, &rule, &value, error, COMMAND_ERROR_SIZE)) != OPTION_END;) {
+        int status = 0;
+        if (kind == OPTION_ERROR) {
+            return -1;
+        }
+        if (kind == OPTION_OPERAND) {
+            if (options->scenario != NULL) {
+                return fail(error, COMMAND_ERROR_SIZE, "motehound run: expected one scenario, found '%.100s' too",
+                            value);
+            }
+            options->scenario = value;
+            continue;
+        }
+        switch (rule) {
+        case RUNS:
+            status = option_count("--runs", value, 1, 1000000, &options->runs, error, COMMAND_ERROR_SIZE);
+            break;
+        case SEED:
+            status = option_count("--seed", value, 0, INT64_MAX - 1000000, &options->seed, error, COMMAND_ERROR_SIZE);
+            break;
+        case JOBS:
+            status = option_count("--jobs", value, 1, 1024, &options->jobs, error, COMMAND_ERROR_SIZE);
+            break;
+        case OUT:
+            options->out = value;
+            break;
+        case BUS:
+            options->bus_url = value;
+            break;
+        case LOG:
+            options->log = true;
+            break;
+        case SWEEP:
+            options->sweep = true;
+            break;
+        case HELP:
+            options->help = true;
+            break;
+        default:
+            break;
+        }
+        if (status != 0) {
+            return -1;
+        }
+    }
+    if (options->scenario == NULL && !options->help) {
+        return fail(error, COMMAND_ERROR_SIZE,
+                    "motehound run: expected a scenario, found nothing; see motehound run --help");
+    }
+    return 0;
+}
+
+/* The scenario's file, then every --set, then what holds between keys. */
+static int read_scenario(struct command *command, const char *path, struct scenario *scenario)
+{
+    char *error = command->error;
+    if (scenario_load(path, scenario, error, COMMAND_ERROR_SIZE) != 0) {
+        return -1;
+    }
+    struct option_reader reader = {.argc = command->argc, .argv = command->argv, .rules = rules, .rule_count = RULES};
+    size_t rule = 0;
+    const char *value = NULL;
+    for (enum option_kind kind;
+         (kind = option_next(&reader, &rule, &value, error, COMMAND_ERROR_SIZE)) != OPTION_END;) {
+        if (kind == OPTION_NAMED && rule == SET && command_set(command, scenario, value) != 0) {
+            return -1;
+        }
+    }
+    return scenario_check(scenario, path, error, COMMAND_ERROR_SIZE);
+}
+
+/* The name of a scenario without one: its file's. */
+static int name_after_file(struct scenario *scenario, const char *path, char *error)
+{
+    const char *slash = strrchr(path, '/');
+    char name[100];
+    if (scenario->name[0] != '\0') {
+        return 0;
+    }
+    snprintf(name, sizeof name, "%.90s", slash != NULL ? slash + 1 : path);
+    char *dot = strrchr(name, '.');
+    if (dot != NULL && dot != name) {
+        *dot = '\0';
+    }
+    return scenario_set(scenario, "name", name, error, COMMAND_ERROR_SIZE);
+}
+
+/* Each value of the sweep into DIR/VALUE; all of them are tried on the scenario before the first is simulated. */
+static int sweep(struct command *command, struct session *session, struct scenario *scenario, const char *path)
+{
+    if (scenario->sweep.values_count == 0) {
+        fail(command->error, COMMAND_ERROR_SIZE, "%s: sweep: expected a key and values for --sweep, found none", path);
+        return 1;
+    }
+    const char *folder = session->out;
+    for (int pass = 0; pass < 2; pass++) {
+        for (unsigned i = 0; i < scenario->sweep.values_count; i++) {
+            const char *value = scenario->sweep.values[i];
+            char reason[1000], out[OUTPUT_PATH_MAX];
+            if (scenario_set(scenario, scenario->sweep.key, value, reason, sizeof reason) != 0) {
+                fail(command->error, COMMAND_ERROR_SIZE, "%s: sweep: %s", path, reason);
+                return 1;
+            }
+            if (scenario_check(scenario, path, command->error, COMMAND_ERROR_SIZE) != 0) {
+                return 1;
+            }
+            snprintf(out, sizeof out, "%.3800s/%.200s", folder, value);
+            for (char *c = out + strlen(folder) + 1; pass == 1 && *c != '\0'; c++) {
+                *c = *c == '/' ? '_' : *c;
+            }
+            session->out = out;
+            if (pass == 1) {
+                printf("%s = %s: ", scenario->sweep.key, value);
+                if (session_execute(command, session) != 0) {
+                    return 1;
+                }
+            }
+        }
+    }
+    return 0;
+}
+
+int command_run(struct command *command)
+{
+    struct run_options options;
+    struct scenario scenario;
+    char path[SCENARIO_PATH_MAX], out[200];
+    if (read_options(command, &options) != 0) {
+        return 1;
+    }
+    if (options.help) {
+        fputs(help, stdout);
+        return 0;
+    }
+    if (scenario_find(options.scenario, path, command->error, COMMAND_ERROR_SIZE) != 0) {
+        return 1;
+    }
+    if (scenario_init(&scenario) != 0 || read_scenario(command, path, &scenario) != 0 ||
+        name_after_file(&scenario, path, command->error) != 0) {
+        scenario_free(&scenario);
+        return 1;
+    }
+    snprintf(out, sizeof out, "out/%s", scenario.name);
+    struct session session = {
+        .batch = {.scenario = &scenario,
+                  .seed = options.seed,
+                  .runs = (unsigned)options.runs,
+                  .jobs = (unsigned)options.jobs,
+                  .version = MOTEHOUND_VERSION,
+                  .stop = command->stop},
+        .name = scenario.name,
+        .out = options.out != NULL ? options.out : out,
+        .bus_url = options.bus_url,
+        .log = options.log,
+    };
+    const int status = options.sweep ? sweep(command, &session, &scenario, path) : session_execute(command, &session);
+    scenario_free(&scenario);
+    return status;
+}

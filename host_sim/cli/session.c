@@ -1,0 +1,100 @@
+#include "cli/command.h"
+
+#include "bus/bus.h"
+#include "cli/progress.h"
+#include "scenario/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+int command_set(struct command *command, struct scenario *scenario, const char *assignment)
+{
+    const char *equals = strchr(assignment, '=');
+    char key[200], reason[1000];
+    if (equals == NULL || (size_t)(equals - assignment) >= sizeof key) {
+        return fail(command->error, sizeof command->error, "--set %.60s: expected key=value", assignment);
+    }
+    snprintf(key, sizeof key, "%.*s", (int)(equals - assignment), assignment);
+    if (scenario_set(scenario, key, equals + 1, reason, sizeof reason) != 0) {
+        return fail(command->error, sizeof command->error, "--set %s", reason);
+    }
+    return 0;
+}
+
+static void put_cell(double value)
+{
+    if (isnan(value)) {
+        printf(" %10s", "-");
+    } else {
+        printf(" %10.4g", value);
+    }
+}
+
+static void put_table(const struct session *session, struct results *results)
+{
+    static const enum metric shown[] = {METRIC_POSITION_RMSE_M,
+                                        METRIC_POSITION_MEDIAN_M,
+                                        METRIC_POSITION_P95_M,
+                                        METRIC_RAW_POSITION_RMSE_M,
+                                        METRIC_POSITION_RMSE_AT_ARRIVAL_M,
+                                        METRIC_NEES_MEDIAN,
+                                        METRIC_TRACKED_SHARE,
+                                        METRIC_TRACK_LOST,
+                                        METRIC_ESTIMATES,
+                                        METRIC_FRAMES_SENT};
+    double pooled[METRIC_ERRORS_COUNT];
+    results_pooled(results, pooled);
+    printf("%s, tracker %s, %u run%s from seed %llu\n", session->name, session->batch.scenario->tracker.name,
+           results->run_count, results->run_count == 1 ? "" : "s", (unsigned long long)results->seed);
+    printf("%-28s %10s %10s %10s %10s %10s\n", "", "mean", "std", "median", "p95", "pooled");
+    for (size_t i = 0; i < sizeof shown / sizeof shown[0]; i++) {
+        struct metric_statistics s;
+        if (results_statistics(results, shown[i], &s)) {
+            printf("%-28s", metric_names[shown[i]]);
+            put_cell(s.mean);
+            put_cell(s.sd);
+            put_cell(s.median);
+            put_cell(s.p95);
+            put_cell((size_t)shown[i] < METRIC_ERRORS_COUNT ? pooled[shown[i]] : (double)NAN);
+            putchar('\n');
+        }
+    }
+}
+
+int session_execute(struct command *command, struct session *session)
+{
+    char *error = command->error;
+    struct results results;
+    struct progress progress;
+    if (results_open(&results, session->out, session->name, session->batch.seed, session->log, error,
+                     COMMAND_ERROR_SIZE) != 0) {
+        return 1;
+    }
+    int status = bus_outside(session->bus_url, &session->batch.outside, error, COMMAND_ERROR_SIZE);
+    if (status == 0) {
+        progress_begin(&progress);
+        session->batch.progress = progress_show;
+        session->batch.progress_context = &progress;
+        status = batch_execute(&session->batch, &results, error, COMMAND_ERROR_SIZE);
+        progress_end(&progress);
+    }
+    if (session->batch.outside != NULL) {
+        lcm_destroy(session->batch.outside);
+    }
+    if (*command->stop != 0) {
+        results_discard(&results);
+        fail(error, COMMAND_ERROR_SIZE, "motehound: interrupted, nothing was written to %.4000s", session->out);
+        return 1;
+    }
+    if (status != 0) {
+        results_discard(&results);
+        return 1;
+    }
+    put_table(session, &results);
+    if (results_commit(&results, session->batch.version, error, COMMAND_ERROR_SIZE) != 0) {
+        return 1;
+    }
+    printf("in %s\n", session->out);
+    return 0;
+}

@@ -1,0 +1,142 @@
+#include "record/metrics.h"
+
+#include <math.h>
+
+enum { TARGETS = 256 };
+
+const char *const metric_names[METRIC_COUNT] = {
+    [METRIC_POSITION_RMSE_M] = "position_rmse_m",
+    [METRIC_POSITION_MEDIAN_M] = "position_median_m",
+    [METRIC_POSITION_P95_M] = "position_p95_m",
+    [METRIC_RAW_POSITION_RMSE_M] = "raw_position_rmse_m",
+    [METRIC_POSITION_RMSE_AT_ARRIVAL_M] = "position_rmse_at_arrival_m",
+    [METRIC_NEES_MEDIAN] = "nees_median",
+    [METRIC_TRACKED_SHARE] = "tracked_share",
+    [METRIC_TRACK_LOST] = "track_lost",
+    [METRIC_ESTIMATES] = "estimates",
+    [METRIC_FRAMES_SENT] = "frames_sent",
+    [METRIC_FRAMES_SENT_BEACONS] = "frames_sent_beacons",
+    [METRIC_FRAMES_SENT_REPORTS] = "frames_sent_reports",
+    [METRIC_FRAMES_SENT_REQUESTS] = "frames_sent_requests",
+    [METRIC_FRAMES_RECEIVED] = "frames_received",
+    [METRIC_FRAMES_LOST] = "frames_lost",
+    [METRIC_READINGS] = "readings",
+    [METRIC_READINGS_REFUSED] = "readings_refused",
+    [METRIC_REPORTS] = "reports",
+    [METRIC_REPORTS_ASKED] = "reports_asked",
+    [METRIC_REPORTS_NO_ROUTE] = "reports_no_route",
+    [METRIC_MEASUREMENTS] = "measurements",
+    [METRIC_MEASUREMENTS_LATE] = "measurements_late",
+    [METRIC_MEASUREMENTS_OVERFLOWED] = "measurements_overflowed",
+};
+
+static double error_of(const motehound_track_t *track)
+{
+    return hypot(track->x_m - track->true_x_m, track->y_m - track->true_y_m);
+}
+
+/* Normalised squared error of the position; NaN where no covariance is stated. */
+static double nees_of(const motehound_track_t *track)
+{
+    const double x = track->x_m - track->true_x_m, y = track->y_m - track->true_y_m;
+    const double determinant = track->cov_xx_m2 * track->cov_yy_m2 - track->cov_xy_m2 * track->cov_xy_m2;
+    if (!(track->cov_xx_m2 > 0) || !(determinant > 0)) {
+        return (double)NAN;
+    }
+    return (track->cov_yy_m2 * x * x - 2 * track->cov_xy_m2 * x * y + track->cov_xx_m2 * y * y) / determinant;
+}
+
+int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)
+{
+    int64_t seen[TARGETS] = {0};
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        const motehound_track_t *track = &recorder->tracks[i];
+        const bool skipped = seen[(uint8_t)track->target]++ < scenario->metrics.skip_first;
+        if (skipped || !track->true_known) {
+            continue;
+        }
+        const double nees = nees_of(track);
+        const double raw = hypot(track->raw_x_m - track->true_x_m, track->raw_y_m - track->true_y_m);
+        const double at_arrival = hypot(track->x_m - track->arrival_x_m, track->y_m - track->arrival_y_m);
+        if (samples_add(&errors->position, error_of(track)) != 0 || samples_add(&errors->raw_position, raw) != 0 ||
+            (track->arrival_known && samples_add(&errors->position_at_arrival, at_arrival) != 0) ||
+            (!isnan(nees) && samples_add(&errors->nees, nees) != 0)) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
+int errors_append(struct errors *errors, const struct errors *more)
+{
+    const bool sound = samples_append(&errors->position, &more->position) == 0 &&
+                       samples_append(&errors->raw_position, &more->raw_position) == 0 &&
+                       samples_append(&errors->position_at_arrival, &more->position_at_arrival) == 0 &&
+                       samples_append(&errors->nees, &more->nees) == 0;
+    return sound ? 0 : -1;
+}
+
+void errors_free(struct errors *errors)
+{
+    samples_free(&errors->position);
+    samples_free(&errors->raw_position);
+    samples_free(&errors->position_at_arrival);
+    samples_free(&errors->nees);
+}
+
+void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT])
+{
+    values[METRIC_POSITION_RMSE_M] = samples_rms(&errors->position);
+    values[METRIC_POSITION_MEDIAN_M] = samples_quantile(&errors->position, 0.5);
+    values[METRIC_POSITION_P95_M] = samples_quantile(&errors->position, 0.95);
+    values[METRIC_RAW_POSITION_RMSE_M] = samples_rms(&errors->raw_position);
+    values[METRIC_POSITION_RMSE_AT_ARRIVAL_M] = samples_rms(&errors->position_at_arrival);
+    values[METRIC_NEES_MEDIAN] = samples_quantile(&errors->nees, 0.5);
+}
+
+static bool lost(const struct recorder *recorder, const struct scenario *scenario)
+{
+    int64_t seen[TARGETS] = {0}, wrong[TARGETS] = {0};
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        const motehound_track_t *track = &recorder->tracks[i];
+        const int target = (uint8_t)track->target;
+        if (seen[target]++ < scenario->metrics.skip_first || !track->true_known) {
+            continue;
+        }
+        wrong[target] = error_of(track) > scenario->metrics.lost_m ? wrong[target] + 1 : 0;
+        if (wrong[target] >= scenario->metrics.lost_samples) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
+                    double values[METRIC_COUNT])
+{
+    size_t tracked = 0;
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        tracked += recorder->tracks[i].true_known ? 1 : 0;
+    }
+    const motehound_run_end_t *end = &recorder->end;
+    const bool truth = recorder->samples > 0;
+    metrics_of_errors(errors, values);
+    values[METRIC_TRACKED_SHARE] = truth ? (double)tracked / (double)recorder->samples : (double)NAN;
+    values[METRIC_TRACK_LOST] = truth ? lost(recorder, scenario) : (double)NAN;
+    values[METRIC_ESTIMATES] = (double)recorder->track_count;
+    values[METRIC_FRAMES_SENT] =
+        (double)(end->frames_sent_beacons + end->frames_sent_reports + end->frames_sent_requests);
+    values[METRIC_FRAMES_SENT_BEACONS] = (double)end->frames_sent_beacons;
+    values[METRIC_FRAMES_SENT_REPORTS] = (double)end->frames_sent_reports;
+    values[METRIC_FRAMES_SENT_REQUESTS] = (double)end->frames_sent_requests;
+    values[METRIC_FRAMES_RECEIVED] = (double)end->frames_received;
+    values[METRIC_FRAMES_LOST] = (double)end->frames_lost;
+    values[METRIC_READINGS] = (double)end->readings;
+    values[METRIC_READINGS_REFUSED] = (double)end->readings_refused;
+    values[METRIC_REPORTS] = (double)end->reports;
+    values[METRIC_REPORTS_ASKED] = (double)end->reports_asked;
+    values[METRIC_REPORTS_NO_ROUTE] = (double)end->reports_no_route;
+    values[METRIC_MEASUREMENTS] = (double)end->measurements;
+    values[METRIC_MEASUREMENTS_LATE] = (double)end->measurements_late;
+    values[METRIC_MEASUREMENTS_OVERFLOWED] = (double)end->measurements_overflowed;
+}

@@ -1,0 +1,85 @@
+#include "record/recorder.h"
+
+#include "bus/bus.h"
+
+#include "motehound_truth_t.h"
+
+#include <stdlib.h>
+
+/* Room for one more element of `size` bytes. Returns false if there is no memory. */
+static bool grow(void **array, size_t count, size_t *capacity, size_t size)
+{
+    if (count < *capacity) {
+        return true;
+    }
+    const size_t wanted = *capacity > 0 ? 2 * *capacity : 128;
+    void *larger = realloc(*array, wanted * size);
+    if (larger == NULL) {
+        return false;
+    }
+    *array = larger;
+    *capacity = wanted;
+    return true;
+}
+
+static void on_track(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    if (grow((void **)&recorder->tracks, recorder->track_count, &recorder->track_capacity, sizeof *recorder->tracks) &&
+        motehound_track_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->tracks[recorder->track_count]) >=
+            0) {
+        recorder->track_count++;
+    } else {
+        recorder->failed = true;
+    }
+}
+
+static void on_node(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    if (grow((void **)&recorder->nodes, recorder->node_count, &recorder->node_capacity, sizeof *recorder->nodes) &&
+        motehound_node_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->nodes[recorder->node_count]) >= 0) {
+        recorder->node_count++;
+    } else {
+        recorder->failed = true;
+    }
+}
+
+static void on_truth(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    motehound_truth_t truth;
+    if (motehound_truth_t_decode(buffer->data, 0, (int)buffer->data_size, &truth) < 0) {
+        recorder->failed = true;
+        return;
+    }
+    recorder->samples += truth.present ? 1 : 0;
+}
+
+static void on_run_end(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    if (motehound_run_end_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->end) < 0) {
+        recorder->failed = true;
+    }
+}
+
+int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
+{
+    const bool sound = lcm_subscribe(lcm, BUS_NODE, on_node, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_TRACK, on_track, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_TRUTH, on_truth, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_RUN_END, on_run_end, recorder) != NULL;
+    return sound ? 0 : -1;
+}
+
+void recorder_free(struct recorder *recorder)
+{
+    free(recorder->tracks);
+    free(recorder->nodes);
+    *recorder = (struct recorder){0};
+}

@@ -1,0 +1,253 @@
+#include "record/results.h"
+
+#include "scenario/text.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Digits of a number in a file: more than any quantity is known to, and the same on every machine. */
+#define DIGITS 10
+
+static void put_number(FILE *file, double value)
+{
+    if (isnan(value)) {
+        fputc(',', file);
+    } else {
+        fprintf(file, ",%.*g", DIGITS, value == 0 ? 0.0 : value); /* no -0 */
+    }
+}
+
+int results_open(struct results *results, const char *out, const char *scenario_name, uint64_t seed, bool log,
+                 char *error, size_t error_size)
+{
+    *results = (struct results){.scenario_name = scenario_name, .seed = seed};
+    if (output_open(&results->output, out, error, error_size) != 0) {
+        return -1;
+    }
+    char path[OUTPUT_PATH_MAX];
+    results->runs = output_create(&results->output, "runs.csv", error, error_size);
+    results->track = results->runs != NULL ? output_create(&results->output, "track.csv", error, error_size) : NULL;
+    if (log && results->track != NULL) {
+        results->log = lcm_eventlog_create(output_path(&results->output, "events.lcm", path), "w");
+        if (results->log == NULL) {
+            fail(error, error_size, "%s/events.lcm: cannot write", out);
+        }
+    }
+    if (results->track == NULL || (log && results->log == NULL)) {
+        results_discard(results);
+        return -1;
+    }
+    fputs("run,seed", results->runs);
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        fprintf(results->runs, ",%s", metric_names[i]);
+    }
+    fputc('\n', results->runs);
+    fputs(
+        "run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,cov_xx_m2,cov_xy_m2,cov_yy_m2,"
+        "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags\n",
+        results->track);
+    return 0;
+}
+
+const char *results_log_path(const struct results *results, unsigned run, char path[OUTPUT_PATH_MAX])
+{
+    char name[40];
+    snprintf(name, sizeof name, "events-%u.lcm", run);
+    return results->log != NULL ? output_path(&results->output, name, path) : NULL;
+}
+
+static void put_track(FILE *file, unsigned run, const motehound_track_t *track)
+{
+    const bool covariance = track->cov_xx_m2 > 0;
+    const double none = (double)NAN;
+    fprintf(file, "%u,%ld", run, (long)track->target);
+    put_number(file, track->time_s);
+    put_number(file, track->x_m);
+    put_number(file, track->y_m);
+    put_number(file, track->raw_x_m);
+    put_number(file, track->raw_y_m);
+    put_number(file, covariance ? sqrt((track->cov_xx_m2 + track->cov_yy_m2) / 2) : none);
+    put_number(file, track->true_known ? track->true_x_m : none);
+    put_number(file, track->true_known ? track->true_y_m : none);
+    put_number(file, track->vx_mps);
+    put_number(file, track->vy_mps);
+    put_number(file, covariance ? track->cov_xx_m2 : none);
+    put_number(file, covariance ? track->cov_xy_m2 : none);
+    put_number(file, covariance ? track->cov_yy_m2 : none);
+    put_number(file, track->measurements);
+    put_number(file, track->arrival_s);
+    put_number(file, track->arrival_known ? track->arrival_x_m : none);
+    put_number(file, track->arrival_known ? track->arrival_y_m : none);
+    fprintf(file, ",%ld\n", (long)track->flags);
+}
+
+/* The first run's motes, in the format that network.file and a replay read. */
+static int put_nodes(const struct results *results, const struct recorder *recorder, char *error, size_t error_size)
+{
+    FILE *file = output_create(&results->output, "nodes.csv", error, error_size);
+    if (file == NULL) {
+        return -1;
+    }
+    fputs("node,x_m,y_m,z_m\n", file);
+    for (size_t i = 0; i < recorder->node_count; i++) {
+        const motehound_node_t *node = &recorder->nodes[i];
+        fprintf(file, "%lu", (unsigned long)(uint32_t)node->node);
+        put_number(file, node->x_m);
+        put_number(file, node->y_m);
+        put_number(file, node->z_m);
+        fputc('\n', file);
+    }
+    return output_finish(file, "nodes.csv", error, error_size);
+}
+
+/* Append the run's own log to the log of all, later than all before, and remove it. */
+static int take_log(struct results *results, char *error, size_t error_size)
+{
+    char path[OUTPUT_PATH_MAX];
+    lcm_eventlog_t *log = lcm_eventlog_create(results_log_path(results, results->run_count, path), "r");
+    if (log == NULL) {
+        return fail(error, error_size, "events.lcm: the log of run %u cannot be read", results->run_count);
+    }
+    int64_t last = results->log_offset_us;
+    int status = 0;
+    for (lcm_eventlog_event_t *event; status == 0 && (event = lcm_eventlog_read_next_event(log)) != NULL;) {
+        last = event->timestamp += results->log_offset_us;
+        status = lcm_eventlog_write_event(results->log, event);
+        lcm_eventlog_free_event(event);
+    }
+    lcm_eventlog_destroy(log);
+    unlink(path);
+    results->log_offset_us = last;
+    return status == 0 ? 0 : fail(error, error_size, "events.lcm: cannot write run %u", results->run_count);
+}
+
+int results_add(struct results *results, uint64_t seed, const struct scenario *scenario,
+                const struct recorder *recorder, char *error, size_t error_size)
+{
+    struct errors errors = {0};
+    double values[METRIC_COUNT];
+    bool memory = errors_of(recorder, scenario, &errors) == 0 && errors_append(&results->pooled, &errors) == 0;
+    metrics_of_run(recorder, scenario, &errors, values);
+    errors_free(&errors);
+    fprintf(results->runs, "%u,%llu", results->run_count, (unsigned long long)seed);
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        put_number(results->runs, values[i]);
+        memory = memory && (isnan(values[i]) || samples_add(&results->metrics[i], values[i]) == 0);
+    }
+    fputc('\n', results->runs);
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        put_track(results->track, results->run_count, &recorder->tracks[i]);
+    }
+    if (!memory) {
+        return fail(error, error_size, "run %u: no memory", results->run_count);
+    }
+    if ((results->run_count == 0 && put_nodes(results, recorder, error, error_size) != 0) ||
+        (results->log != NULL && take_log(results, error, error_size) != 0)) {
+        return -1;
+    }
+    results->run_count++;
+    return 0;
+}
+
+bool results_statistics(struct results *results, enum metric metric, struct metric_statistics *statistics)
+{
+    struct samples *samples = &results->metrics[metric];
+    *statistics = (struct metric_statistics){
+        .mean = samples_mean(samples),
+        .sd = samples_sd(samples),
+        .median = samples_quantile(samples, 0.5),
+        .p95 = samples_quantile(samples, 0.95),
+        .n = samples->count,
+    };
+    return samples->count > 0;
+}
+
+void results_pooled(struct results *results, double values[METRIC_ERRORS_COUNT])
+{
+    metrics_of_errors(&results->pooled, values);
+}
+
+static json_t *summary(struct results *results, const char *version)
+{
+    json_t *metrics = json_object(), *pooled = json_object();
+    double values[METRIC_ERRORS_COUNT];
+    int status = metrics == NULL || pooled == NULL;
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        struct metric_statistics s;
+        if (results_statistics(results, (enum metric)i, &s)) {
+            status |= json_object_set_new(metrics, metric_names[i],
+                                          json_pack("{s:f, s:f, s:f, s:f, s:I}", "mean", s.mean, "std", s.sd, "median",
+                                                    s.median, "p95", s.p95, "n", (json_int_t)s.n));
+        }
+    }
+    results_pooled(results, values);
+    for (size_t i = 0; i < METRIC_ERRORS_COUNT; i++) {
+        if (!isnan(values[i])) {
+            status |= json_object_set_new(pooled, metric_names[i], json_real(values[i]));
+        }
+    }
+    json_t *whole = json_pack("{s:s, s:I, s:I, s:s, s:o, s:o}", "scenario", results->scenario_name, "seed",
+                              (json_int_t)results->seed, "runs", (json_int_t)results->run_count, "version", version,
+                              "metrics", metrics, "pooled", pooled);
+    if (status != 0) {
+        json_decref(whole);
+        return NULL;
+    }
+    return whole;
+}
+
+static int put_summary(struct results *results, const char *version, char *error, size_t error_size)
+{
+    json_t *whole = summary(results, version);
+    if (whole == NULL) {
+        return fail(error, error_size, "summary.json: no memory, or a name that is not UTF-8");
+    }
+    FILE *file = output_create(&results->output, "summary.json", error, error_size);
+    if (file == NULL) {
+        json_decref(whole);
+        return -1;
+    }
+    json_dumpf(whole, file, JSON_INDENT(2) | JSON_REAL_PRECISION(DIGITS));
+    fputc('\n', file);
+    json_decref(whole);
+    return output_finish(file, "summary.json", error, error_size);
+}
+
+int results_commit(struct results *results, const char *version, char *error, size_t error_size)
+{
+    static const char *const names[] = {"runs.csv", "track.csv", "nodes.csv", "summary.json", "events.lcm"};
+    const bool logged = results->log != NULL;
+    bool sound = put_summary(results, version, error, error_size) == 0 &&
+                 output_sync(results->runs, "runs.csv", error, error_size) == 0 &&
+                 output_sync(results->track, "track.csv", error, error_size) == 0;
+    if (sound && logged) {
+        sound = output_sync(results->log->f, "events.lcm", error, error_size) == 0;
+    }
+    if (sound) {
+        sound = output_commit(&results->output, names, logged ? 5 : 4, error, error_size) == 0;
+    }
+    results_discard(results);
+    return sound ? 0 : -1;
+}
+
+void results_discard(struct results *results)
+{
+    if (results->runs != NULL) {
+        fclose(results->runs);
+    }
+    if (results->track != NULL) {
+        fclose(results->track);
+    }
+    if (results->log != NULL) {
+        lcm_eventlog_destroy(results->log);
+    }
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        samples_free(&results->metrics[i]);
+    }
+    errors_free(&results->pooled);
+    output_discard(&results->output);
+    *results = (struct results){0};
+}

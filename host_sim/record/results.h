@@ -1,0 +1,59 @@
+/* The files of one or many runs: summary.json, runs.csv, track.csv, nodes.csv and, with a log, events.lcm. Runs are added in their
+ * order, whatever order they ended in, so the same runs give the same bytes.
+ *
+ * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the "mean", "std" (divisor
+ * n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics over all estimates of all runs
+ * together.
+ * track.csv: one row an estimate; sd_m is the standard deviation of one coordinate, sqrt((cov_xx + cov_yy) / 2). Fields that
+ * do not apply are empty. nodes.csv: where the motes of the first run stand. */
+#ifndef MOTEHOUND_SIM_RESULTS_H
+#define MOTEHOUND_SIM_RESULTS_H
+
+#include "record/metrics.h"
+#include "record/output.h"
+
+#include <lcm/lcm.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct results {
+    struct output output;
+    const char *scenario_name;
+    uint64_t seed;
+    FILE *runs, *track;
+    lcm_eventlog_t *log;   /* NULL without --log */
+    int64_t log_offset_us; /* one run after the other */
+    unsigned run_count;
+    struct samples metrics[METRIC_COUNT];
+    struct errors pooled;
+};
+
+/* Begin in folder `out`. Returns 0, or -1 with one line in `error` and nothing left behind. */
+int results_open(struct results *results, const char *out, const char *scenario_name, uint64_t seed, bool log,
+                 char *error, size_t error_size);
+
+/* Where the log of a run is to be written: a file in the hidden folder that results_add takes over. In `path`, which is
+ * returned; NULL without a log. */
+const char *results_log_path(const struct results *results, unsigned run, char path[OUTPUT_PATH_MAX]);
+
+/* Add the next run. Returns 0, or -1 with one line in `error`. */
+int results_add(struct results *results, uint64_t seed, const struct scenario *scenario,
+                const struct recorder *recorder, char *error, size_t error_size);
+
+/* Write the summary and let everything appear. Frees `results`. Returns 0, or -1 with one line in `error`. */
+int results_commit(struct results *results, const char *version, char *error, size_t error_size);
+
+/* Leave nothing behind. Frees `results`; harmless after results_commit. */
+void results_discard(struct results *results);
+
+/* Statistics of a metric over the runs added so far; false if it applies to none. */
+struct metric_statistics {
+    double mean, sd, median, p95;
+    size_t n;
+};
+bool results_statistics(struct results *results, enum metric metric, struct metric_statistics *statistics);
+
+/* The runs' error metrics pooled over all estimates; NaN where one does not apply. */
+void results_pooled(struct results *results, double values[METRIC_ERRORS_COUNT]);
+
+#endif

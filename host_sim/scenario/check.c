@@ -1,0 +1,87 @@
+/* What only holds between the keys of a scenario. */
+#include "scenario/keys.h"
+#include "scenario/text.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A mote's clock wraps after 49.7 days and tells times apart up to half of that. */
+#define RUN_MAX_S 2e6
+
+static double leg_length(const struct waypoint *a, const struct waypoint *b)
+{
+    return hypot(b->x_m - a->x_m, b->y_m - a->y_m);
+}
+
+/* How long the source is on its way. */
+static double duration(const struct scenario *scenario)
+{
+    const struct waypoint *points = scenario->source.points;
+    double seconds = 0;
+    switch (scenario->source.path) {
+    case PATH_WAYPOINTS:
+        for (unsigned i = 1; i < scenario->source.points_count; i++) {
+            seconds += leg_length(&points[i - 1], &points[i]) / (scenario->source.speed_mps * points[i].speed_factor);
+        }
+        return seconds;
+    case PATH_ARCS: /* two quarters of a circle whose chords are each half the way */
+        return leg_length(&points[0], &points[1]) / (4 * sin(acos(-1) / 4)) * acos(-1) / scenario->source.speed_mps;
+    case PATH_STILL:
+        return scenario->source.duration_s;
+    }
+    return 0;
+}
+
+int scenario_check(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const unsigned points = scenario->source.points_count;
+    if (scenario->source.path == PATH_WAYPOINTS && points < 2) {
+        return fail(error, error_size, "%s: source.points: expected at least 2 for waypoints, found %u", name, points);
+    }
+    if (scenario->source.path == PATH_ARCS &&
+        (points != 2 || leg_length(&scenario->source.points[0], &scenario->source.points[1]) <= 0)) {
+        return fail(error, error_size, "%s: source.points: expected 2 different ones for arcs, found %u", name, points);
+    }
+    if (scenario->source.path == PATH_STILL && scenario->source.duration_s <= 0) {
+        return fail(error, error_size, "%s: source.duration_s: expected more than 0 for a still source, found 0", name);
+    }
+    const double run_s = duration(scenario);
+    if (!(run_s > 0) || run_s > RUN_MAX_S) {
+        return fail(error, error_size, "%s: source: expected a path of more than 0 and at most %g s, found %g s", name,
+                    RUN_MAX_S, run_s);
+    }
+    if (scenario->sensor.outage_s > 0 && scenario->sensor.outage_start_s + scenario->sensor.outage_s > run_s) {
+        return fail(error, error_size, "%s: sensor.outage_s: expected an end within the run of %g s, found %g s", name,
+                    run_s, scenario->sensor.outage_start_s + scenario->sensor.outage_s);
+    }
+    if (scenario->network.layout == LAYOUT_FILE && scenario->network.file[0] == '\0') {
+        return fail(error, error_size, "%s: network.file: expected a nodes.csv for layout file, found nothing", name);
+    }
+    if (scenario->network.sink_x_m < 0 || scenario->network.sink_x_m > scenario->field.width_m) {
+        return fail(error, error_size, "%s: network.sink_x_m: expected a number 0 to field.width_m = %g, found %g",
+                    name, scenario->field.width_m, scenario->network.sink_x_m);
+    }
+    if (scenario->network.sink_y_m < 0 || scenario->network.sink_y_m > scenario->field.height_m) {
+        return fail(error, error_size, "%s: network.sink_y_m: expected a number 0 to field.height_m = %g, found %g",
+                    name, scenario->field.height_m, scenario->network.sink_y_m);
+    }
+    if (scenario->sweep.key[0] != '\0' &&
+        (scenario_key_find(scenario->sweep.key) == NULL || scenario->sweep.values_count == 0)) {
+        return fail(error, error_size,
+                    "%s: sweep: expected the name of a key and at least one value, found '%.60s' and %u", name,
+                    scenario->sweep.key, scenario->sweep.values_count);
+    }
+    return scenario_check_tracking(scenario, name, error, error_size);
+}
+
+int scenario_check_tracking(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    if (scenario->tracker.window_s >= scenario->sensor.interval_s) {
+        return fail(error, error_size, "%s: tracker.window_s: expected less than sensor.interval_s = %g, found %g",
+                    name, scenario->sensor.interval_s, scenario->tracker.window_s);
+    }
+    if (strcmp(scenario->tracker.name, "diffusion") == 0 && scenario->tracker.chi <= 0) {
+        return fail(error, error_size, "%s: tracker.chi: expected more than 0 for tracker diffusion, found 0", name);
+    }
+    return 0;
+}

@@ -1,0 +1,334 @@
+#include "scenario/keys.h"
+
+#include "scenario/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define AT(member) offsetof(struct scenario, member)
+
+/* clang-format off */
+const struct scenario_key scenario_keys[] = {
+    {"name", KEY_TEXT, AT(name), "", 0, 100, NULL, "of the experiment"},
+    {"description", KEY_TEXT, AT(description), "", 0, 400, NULL, "one sentence for `motehound list`"},
+    {"field.width_m", KEY_NUMBER, AT(field.width_m), "80", 1, 1e5, NULL, "the field is [0, width] x [0, height]"},
+    {"field.height_m", KEY_NUMBER, AT(field.height_m), "80", 1, 1e5, NULL, ""},
+    {"source.path", KEY_CHOICE, AT(source.path), "arcs", 0, 0, "waypoints|arcs|still", "straight legs; two arcs of 90 degrees, left then right; or no movement"},
+    {"source.points", KEY_POINTS, AT(source.points), "0,0; 38,78", 1, 1000, NULL, "corners, in a file as a list of {x_m, y_m, speed_factor}; the factor belongs to the leg that ends there"},
+    {"source.speed_mps", KEY_NUMBER, AT(source.speed_mps), "1", 0.01, 100, NULL, "along the path"},
+    {"source.duration_s", KEY_NUMBER, AT(source.duration_s), "0", 0, 1e6, NULL, "of a still source; a moving one takes as long as its path"},
+    {"source.release_gps", KEY_NUMBER, AT(source.release_gps), "100", 0, 1e6, NULL, "mean release rate"},
+    {"source.release_variation", KEY_NUMBER, AT(source.release_variation), "0", 0, 0.95, NULL, "share of the release that varies as a sine"},
+    {"source.release_period_s", KEY_NUMBER, AT(source.release_period_s), "60", 0.1, 1e6, NULL, "period of that sine"},
+    {"source.diffusion_m2ps", KEY_NUMBER, AT(source.diffusion_m2ps), "1", 1e-4, 1e4, NULL, "diffusion coefficient of the field"},
+    {"network.nodes", KEY_COUNT, AT(network.nodes), "1280", 4, 1e6, NULL, "sensor nodes"},
+    {"network.layout", KEY_CHOICE, AT(network.layout), "uniform", 0, 0, "uniform|r2|grid|file", "random, quasi-random, cell-centred grid, or from network.file"},
+    {"network.file", KEY_TEXT, AT(network.file), "", 0, 4000, NULL, "nodes.csv of layout file; in a file relative to it"},
+    {"network.sink_x_m", KEY_NUMBER, AT(network.sink_x_m), "40", -1e5, 1e5, NULL, "where the head stands"},
+    {"network.sink_y_m", KEY_NUMBER, AT(network.sink_y_m), "40", -1e5, 1e5, NULL, ""},
+    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection", "how measurements reach the head"},
+    {"sensor.interval_s", KEY_NUMBER, AT(sensor.interval_s), "1", 0.01, 3600, NULL, "between samples; in a replay the recording's own unless set"},
+    {"sensor.relative_noise", KEY_NUMBER, AT(sensor.relative_noise), "0", 0, 1, NULL, "standard deviation as a share of the reading"},
+    {"sensor.additive_noise", KEY_NUMBER, AT(sensor.additive_noise), "0", 0, 1000, NULL, "standard deviation, g/m2"},
+    {"sensor.adc_bits", KEY_COUNT, AT(sensor.adc_bits), "0", 0, 24, NULL, "of the converter; 0 for an ideal one"},
+    {"sensor.full_scale", KEY_NUMBER, AT(sensor.full_scale), "64", 1e-3, 2047, NULL, "of the converter, g/m2"},
+    {"sensor.loss", KEY_NUMBER, AT(sensor.loss), "0", 0, 1, NULL, "probability that a reading never comes"},
+    {"sensor.outage_start_s", KEY_NUMBER, AT(sensor.outage_start_s), "0", 0, 1e6, NULL, "from then on no reading of any node comes ..."},
+    {"sensor.outage_s", KEY_NUMBER, AT(sensor.outage_s), "0", 0, 1e6, NULL, "... for this long"},
+    {"radio.range_m", KEY_NUMBER, AT(radio.range_m), "15", 0.1, 1e5, NULL, "frames reach every mote within"},
+    {"radio.delay_s", KEY_NUMBER, AT(radio.delay_s), "0.001", 0, 10, NULL, "of one hop, beside the air time"},
+    {"radio.bitrate_bps", KEY_NUMBER, AT(radio.bitrate_bps), "250000", 100, 1e9, NULL, "gives the air time"},
+    {"radio.loss", KEY_NUMBER, AT(radio.loss), "0", 0, 1, NULL, "probability that a receiver loses a frame"},
+    {"tracker.name", KEY_WORD, AT(tracker.name), "diffusion", 0, 0, "diffusion|luo|range", "which tracker the head runs"},
+    {"tracker.diffusion_m2ps", KEY_NUMBER, AT(tracker.diffusion_m2ps), "1", 1e-4, 1e4, NULL, "diffusion, luo: assumed diffusion coefficient"},
+    {"tracker.chi", KEY_NUMBER, AT(tracker.chi), "0.2", 0, 1000, NULL, "diffusion, luo: significant increment of concentration, g/m2"},
+    {"tracker.release_gps", KEY_NUMBER, AT(tracker.release_gps), "100", 1e-6, 1e6, NULL, "diffusion: expected release rate"},
+    {"tracker.additive_sd", KEY_NUMBER, AT(tracker.additive_sd), "0.05", 1e-6, 1000, NULL, "diffusion: assumed noise of a reading, g/m2"},
+    {"tracker.relative_sd", KEY_NUMBER, AT(tracker.relative_sd), "0.05", 0, 1, NULL, "diffusion: assumed noise as a share of the reading"},
+    {"tracker.forgetting", KEY_NUMBER, AT(tracker.forgetting), "0.97", 0.5, 0.9999, NULL, "luo: b of the Sage-Husa weight"},
+    {"tracker.nonlinear", KEY_SWITCH, AT(tracker.nonlinear), "false", 0, 0, NULL, "luo: solve Eq. (9) from the answer of (10)"},
+    {"tracker.range_sd_m", KEY_NUMBER, AT(tracker.range_sd_m), "0.3", 1e-4, 1e4, NULL, "range: assumed noise of a range"},
+    {"tracker.acceleration_sd_mps2", KEY_NUMBER, AT(tracker.acceleration_sd_mps2), "0.5", 1e-6, 1e3, NULL, "range: assumed acceleration of the target"},
+    {"tracker.height_m", KEY_NUMBER, AT(tracker.height_m), "0", -1e4, 1e4, NULL, "range: of the target in the nodes' frame"},
+    {"tracker.window_s", KEY_NUMBER, AT(tracker.window_s), "0", 0, 3600, NULL, "reports are waited for this long after their sample; 0 for half the interval"},
+    {"metrics.skip_first", KEY_COUNT, AT(metrics.skip_first), "3", 0, 1e6, NULL, "estimates of each target left out of the errors"},
+    {"metrics.lost_m", KEY_NUMBER, AT(metrics.lost_m), "5", 1e-6, 1e6, NULL, "a track is lost when its error is larger than this ..."},
+    {"metrics.lost_samples", KEY_COUNT, AT(metrics.lost_samples), "5", 1, 1e6, NULL, "... in so many successive estimates"},
+    {"sweep.key", KEY_TEXT, AT(sweep.key), "", 0, 100, NULL, "what `motehound run --sweep` varies"},
+    {"sweep.values", KEY_LIST, AT(sweep.values), "", 0, 1000, NULL, "the values it takes"},
+};
+/* clang-format on */
+
+const size_t scenario_key_count = sizeof scenario_keys / sizeof scenario_keys[0];
+
+const struct scenario_key *scenario_key_find(const char *path)
+{
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        if (strcmp(scenario_keys[i].path, path) == 0) {
+            return &scenario_keys[i];
+        }
+    }
+    return NULL;
+}
+
+const char *scenario_key_expectation(const struct scenario_key *key, char *text, size_t size)
+{
+    switch (key->type) {
+    case KEY_NUMBER:
+        snprintf(text, size, "a number %g to %g", key->minimum, key->maximum);
+        break;
+    case KEY_COUNT:
+        snprintf(text, size, "a whole number %.0f to %.0f", key->minimum, key->maximum);
+        break;
+    case KEY_SWITCH:
+        snprintf(text, size, "true or false");
+        break;
+    case KEY_CHOICE:
+    case KEY_WORD:
+        snprintf(text, size, strchr(key->choices, '|') != NULL ? "one of %s" : "%s", key->choices);
+        for (char *bar = strchr(text, '|'); bar != NULL; bar = strchr(bar, '|')) {
+            *bar = '/';
+        }
+        break;
+    case KEY_TEXT:
+        snprintf(text, size, "text of at most %.0f bytes", key->maximum);
+        break;
+    case KEY_POINTS:
+        snprintf(text, size, "%.0f to %.0f points `x,y[,speed factor]; ...`", key->minimum, key->maximum);
+        break;
+    case KEY_LIST:
+        snprintf(text, size, "at most %.0f values `a, b, ...`", key->maximum);
+        break;
+    }
+    return text;
+}
+
+/* Edit distance (Levenshtein); paths are at most 63 bytes long, longer ones are cut. */
+static size_t distance(const char *a, const char *b)
+{
+    enum { LONGEST = 63 };
+    size_t row[LONGEST + 1];
+    const size_t a_length = strnlen(a, LONGEST), b_length = strnlen(b, LONGEST);
+    for (size_t j = 0; j <= b_length; j++) {
+        row[j] = j;
+    }
+    for (size_t i = 1; i <= a_length; i++) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= b_length; j++) {
+            const size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = row[j];
+            const size_t shifted = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+            row[j] = replaced < shifted ? replaced : shifted;
+        }
+    }
+    return row[b_length];
+}
+
+int scenario_key_unknown(const char *place, const char *path, char *error, size_t error_size)
+{
+    const struct scenario_key *nearest = &scenario_keys[0];
+    for (size_t i = 1; i < scenario_key_count; i++) {
+        if (distance(path, scenario_keys[i].path) < distance(path, nearest->path)) {
+            nearest = &scenario_keys[i];
+        }
+    }
+    return fail(error, error_size, "%s%.60s: unknown key, expected one of `motehound list --keys`; the nearest is %s",
+                place, path, nearest->path);
+}
+
+/* Index of `word` among the words of `choices`, or -1. */
+static int choice_of(const char *choices, const char *word)
+{
+    const size_t length = strlen(word);
+    int index = 0;
+    for (const char *c = choices; c != NULL; index++) {
+        const char *end = strchr(c, '|');
+        if ((end != NULL ? (size_t)(end - c) : strlen(c)) == length && strncmp(c, word, length) == 0) {
+            return index;
+        }
+        c = end != NULL ? end + 1 : NULL;
+    }
+    return -1;
+}
+
+static void free_list(char **values, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        free(values[i]);
+    }
+    free(values);
+}
+
+/* `text` cut at each `separator` into pieces without spaces around them. Returns the number of pieces; -1: no memory. */
+static int split(const char *text, char separator, char ***pieces)
+{
+    size_t count = 1;
+    for (const char *c = text; *c != '\0'; c++) {
+        count += *c == separator;
+    }
+    *pieces = calloc(count, sizeof **pieces);
+    if (*pieces == NULL) {
+        return -1;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const char separators[] = {separator, '\0'};
+        const size_t length = strcspn(text, separators);
+        const size_t before = strspn(text, " \t") < length ? strspn(text, " \t") : length;
+        size_t kept = length - before;
+        while (kept > 0 && strchr(" \t", text[before + kept - 1]) != NULL) {
+            kept--;
+        }
+        (*pieces)[i] = strndup(text + before, kept);
+        if ((*pieces)[i] == NULL) {
+            free_list(*pieces, (unsigned)i);
+            return -1;
+        }
+        text += length + 1;
+    }
+    return (int)count;
+}
+
+/* "x,y[,factor]; ..." Returns false on anything else. */
+static bool set_points(struct scenario *scenario, const struct scenario_key *key, const char *value)
+{
+    char **pieces;
+    const int count = split(value, ';', &pieces);
+    if (count < 0) {
+        return false;
+    }
+    struct waypoint *points = calloc((size_t)count, sizeof *points);
+    bool sound = points != NULL && count <= key->maximum;
+    for (int i = 0; i < count && sound; i++) {
+        char **numbers;
+        const int numbers_count = split(pieces[i], ',', &numbers);
+        double number[3] = {0, 0, 1};
+        sound = numbers_count == 2 || numbers_count == 3;
+        for (int j = 0; j < numbers_count && sound; j++) {
+            sound = text_number(numbers[j], strlen(numbers[j]), &number[j]) && fabs(number[j]) <= 1e6;
+        }
+        sound = sound && number[2] >= 1e-3 && number[2] <= 1e3;
+        points[i] = (struct waypoint){number[0], number[1], number[2]};
+        if (numbers_count > 0) {
+            free_list(numbers, (unsigned)numbers_count);
+        }
+    }
+    free_list(pieces, (unsigned)count);
+    if (!sound) {
+        free(points);
+        return false;
+    }
+    free(scenario->source.points);
+    scenario->source.points = points;
+    scenario->source.points_count = (unsigned)count;
+    return true;
+}
+
+static bool set_list(struct scenario *scenario, const struct scenario_key *key, const char *value)
+{
+    char **values = NULL;
+    const int count = *value == '\0' ? 0 : split(value, ',', &values);
+    if (count < 0 || count > key->maximum) {
+        if (count > 0) {
+            free_list(values, (unsigned)count);
+        }
+        return false;
+    }
+    free_list(scenario->sweep.values, scenario->sweep.values_count);
+    scenario->sweep.values = values;
+    scenario->sweep.values_count = (unsigned)count;
+    return true;
+}
+
+static bool set_text(char **member, const char *value)
+{
+    char *copy = strdup(value);
+    if (copy == NULL) {
+        return false;
+    }
+    free(*member);
+    *member = copy;
+    return true;
+}
+
+/* False if `value` is not what the key expects. */
+static bool set(struct scenario *scenario, const struct scenario_key *key, const char *value)
+{
+    void *member = (char *)scenario + key->offset;
+    double number = 0;
+    switch (key->type) {
+    case KEY_NUMBER:
+    case KEY_COUNT:
+        if (!text_number(value, strlen(value), &number) || number < key->minimum || number > key->maximum) {
+            return false;
+        }
+        if (key->type == KEY_NUMBER) {
+            *(double *)member = number;
+            return true;
+        }
+        *(int64_t *)member = floor(number) >= number ? (int64_t)number : *(int64_t *)member;
+        return floor(number) >= number;
+    case KEY_SWITCH:
+        if (strcmp(value, "true") != 0 && strcmp(value, "false") != 0) {
+            return false;
+        }
+        *(bool *)member = value[0] == 't';
+        return true;
+    case KEY_CHOICE: {
+        const int choice = choice_of(key->choices, value);
+        if (choice >= 0) {
+            memcpy(member, &choice, sizeof choice);
+        }
+        return choice >= 0;
+    }
+    case KEY_WORD:
+        return choice_of(key->choices, value) >= 0 && set_text(member, value);
+    case KEY_TEXT:
+        return (double)strlen(value) <= key->maximum && set_text(member, value);
+    case KEY_POINTS:
+        return set_points(scenario, key, value);
+    case KEY_LIST:
+        return set_list(scenario, key, value);
+    }
+    return false;
+}
+
+int scenario_set(struct scenario *scenario, const char *path, const char *value, char *error, size_t error_size)
+{
+    const struct scenario_key *key = scenario_key_find(path);
+    if (key == NULL) {
+        return scenario_key_unknown("", path, error, error_size);
+    }
+    if (!set(scenario, key, value)) {
+        char expectation[200];
+        return fail(error, error_size, "%s: expected %s, found '%.60s'", path,
+                    scenario_key_expectation(key, expectation, sizeof expectation), value);
+    }
+    return 0;
+}
+
+int scenario_init(struct scenario *scenario)
+{
+    memset(scenario, 0, sizeof *scenario);
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        if (!set(scenario, &scenario_keys[i], scenario_keys[i].standard)) {
+            scenario_free(scenario);
+            return -1;
+        }
+    }
+    return 0;
+}
+
+void scenario_free(struct scenario *scenario)
+{
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        if (scenario_keys[i].type == KEY_TEXT || scenario_keys[i].type == KEY_WORD) {
+            free(*(char **)(void *)((char *)scenario + scenario_keys[i].offset));
+        }
+    }
+    free(scenario->source.points);
+    free_list(scenario->sweep.values, scenario->sweep.values_count);
+    memset(scenario, 0, sizeof *scenario);
+}

@@ -1,0 +1,354 @@
+/* A scenario's YAML file. libcyaml checks its shape by a schema that is made from the table of keys and gives every value as
+ * text; scenario_set turns the texts into values, so that a file and --set are read by the same code. libyaml's own document
+ * tree is asked only for the line of a value that was refused. */
+#include "scenario/keys.h"
+#include "scenario/text.h"
+
+#include <cyaml/cyaml.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+enum { KEYS_MAX = 128, SECTIONS_MAX = 32, FIELDS_MAX = KEYS_MAX + 2 * SECTIONS_MAX };
+
+struct raw_point {
+    char *x, *y, *speed_factor;
+};
+
+/* The document as texts, NULL where a key is absent. */
+struct raw {
+    char *values[KEYS_MAX];
+    struct raw_point *points;
+    unsigned points_count;
+    char **list;
+    unsigned list_count;
+};
+
+static const cyaml_schema_field_t point_fields[] = {
+    CYAML_FIELD_STRING_PTR("x_m", CYAML_FLAG_POINTER, struct raw_point, x, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_STRING_PTR("y_m", CYAML_FLAG_POINTER, struct raw_point, y, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_STRING_PTR("speed_factor", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw_point, speed_factor, 0,
+                           CYAML_UNLIMITED),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t point_schema = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct raw_point, point_fields),
+};
+static const cyaml_schema_value_t text_schema = {
+    CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 0, CYAML_UNLIMITED),
+};
+
+struct schema {
+    cyaml_schema_field_t fields[FIELDS_MAX]; /* of all sections, one after the other, each ended by CYAML_FIELD_END */
+    cyaml_schema_field_t top[SECTIONS_MAX];
+    char section_names[SECTIONS_MAX][32];
+    cyaml_schema_value_t root;
+};
+
+static cyaml_schema_field_t field_of(size_t index, const char *name)
+{
+    const cyaml_schema_field_t points = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
+                                                             points, &point_schema, 0, CYAML_UNLIMITED);
+    const cyaml_schema_field_t list = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
+                                                           list, &text_schema, 0, CYAML_UNLIMITED);
+    cyaml_schema_field_t field =
+        CYAML_FIELD_STRING_PTR("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw, values[0], 0, CYAML_UNLIMITED);
+    if (scenario_keys[index].type == KEY_POINTS) {
+        field = points;
+    } else if (scenario_keys[index].type == KEY_LIST) {
+        field = list;
+    } else {
+        field.data_offset = (uint32_t)(offsetof(struct raw, values) + index * sizeof(char *));
+    }
+    field.key = name;
+    return field;
+}
+
+/* One mapping for each section, the part of a path before its dot; the keys of a section stand together in the table. All
+ * sections lie over the same struct raw. */
+static void make_schema(struct schema *schema)
+{
+    memset(schema, 0, sizeof *schema);
+    size_t fields = 0, top = 0, sections = 0;
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        const char *path = scenario_keys[i].path;
+        const char *dot = strchr(path, '.');
+        if (dot == NULL) {
+            schema->top[top++] = field_of(i, path);
+            continue;
+        }
+        const size_t length = (size_t)(dot - path);
+        if (sections == 0 || strlen(schema->section_names[sections - 1]) != length ||
+            strncmp(schema->section_names[sections - 1], path, length) != 0) {
+            fields += sections > 0; /* leave CYAML_FIELD_END behind the section before */
+            snprintf(schema->section_names[sections], sizeof schema->section_names[0], "%.*s", (int)length, path);
+            schema->top[top++] = (cyaml_schema_field_t){
+                .key = schema->section_names[sections],
+                .value = {.type = CYAML_MAPPING,
+                          .flags = CYAML_FLAG_OPTIONAL,
+                          .data_size = sizeof(struct raw),
+                          .mapping = {.fields = &schema->fields[fields]}},
+            };
+            sections++;
+        }
+        schema->fields[fields++] = field_of(i, dot + 1);
+    }
+    schema->root = (cyaml_schema_value_t){CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, struct raw, schema->top)};
+}
+
+/* What libcyaml says: a line "Load: ...", then a backtrace from the innermost mapping outwards. */
+struct complaint {
+    char text[2048];
+    size_t used;
+};
+
+static void listen(cyaml_log_t level, void *context, const char *format, va_list arguments)
+{
+    (void)level;
+    struct complaint *complaint = context;
+    const size_t left = sizeof complaint->text - complaint->used;
+    const int written = vsnprintf(complaint->text + complaint->used, left, format, arguments);
+    complaint->used += written < 0 ? 0 : ((size_t)written < left ? (size_t)written : left - 1);
+}
+
+/* The keys of the backtrace, outermost first, joined by dots. */
+static void path_of(const struct complaint *complaint, char *path, size_t size)
+{
+    static const char mark[] = "in mapping field '";
+    path[0] = '\0';
+    for (const char *at = strstr(complaint->text, mark); at != NULL; at = strstr(at + 1, mark)) {
+        const char *name = at + sizeof mark - 1;
+        char inner[200];
+        snprintf(inner, sizeof inner, "%s", path);
+        snprintf(path, size, "%.*s%s%.120s", (int)strcspn(name, "'"), name, inner[0] != '\0' ? "." : "", inner);
+    }
+}
+
+static const char *shape(const char *word)
+{
+    if (strncmp(word, "SEQUENCE", 8) == 0) {
+        return "a list";
+    }
+    if (strncmp(word, "MAPPING", 7) == 0) {
+        return "a block of keys";
+    }
+    return "a single value";
+}
+
+/* A node of the document by path, such as source.points[2].x_m; NULL if it is not there. */
+static const yaml_node_t *node_of(yaml_document_t *document, const char *path)
+{
+    const yaml_node_t *node = yaml_document_get_root_node(document);
+    while (node != NULL && *path != '\0') {
+        const yaml_node_t *next = NULL;
+        if (*path == '[' && node->type == YAML_SEQUENCE_NODE) {
+            const long index = strtol(path + 1, NULL, 10);
+            const yaml_node_item_t *item = node->data.sequence.items.start + index;
+            next = item < node->data.sequence.items.top ? yaml_document_get_node(document, *item) : NULL;
+            path += strcspn(path, "]") + 1;
+        } else if (node->type == YAML_MAPPING_NODE) {
+            const size_t length = strcspn(path, ".[");
+            for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top;
+                 pair++) {
+                const yaml_node_t *key = yaml_document_get_node(document, pair->key);
+                if (key->type == YAML_SCALAR_NODE && key->data.scalar.length == length &&
+                    memcmp(key->data.scalar.value, path, length) == 0) {
+                    next = yaml_document_get_node(document, pair->value);
+                }
+            }
+            path += length;
+        }
+        path += *path == '.';
+        node = next;
+    }
+    return node;
+}
+
+/* The line of the value at `path`, or of what makes the document no YAML at all; 0 if neither is to be found. */
+static size_t line_of(const char *yaml, size_t length, const char *path, char *problem, size_t problem_size)
+{
+    yaml_parser_t parser;
+    yaml_document_t document;
+    size_t line = 0;
+    if (!yaml_parser_initialize(&parser)) {
+        return 0;
+    }
+    yaml_parser_set_input_string(&parser, (const unsigned char *)yaml, length);
+    if (yaml_parser_load(&parser, &document)) {
+        const yaml_node_t *node = node_of(&document, path);
+        line = node != NULL ? node->start_mark.line + 1 : 0;
+        yaml_document_delete(&document);
+    } else {
+        line = parser.problem_mark.line + 1;
+        snprintf(problem, problem_size, "%s", parser.problem != NULL ? parser.problem : "no memory");
+    }
+    yaml_parser_delete(&parser);
+    return line;
+}
+
+/* What libcyaml refused, in our words. */
+static int explain(const char *yaml, size_t length, const char *name, const struct complaint *complaint, char *error,
+                   size_t error_size)
+{
+    const char *text = complaint->text;
+    const char *line_text = strstr(text, "(line: ");
+    size_t line = line_text != NULL ? strtoul(line_text + 7, NULL, 10) : 1;
+    char path[300], place[4200], word[100] = "";
+    path_of(complaint, path, sizeof path);
+    const char *after = path[0] != '\0' ? ": " : "";
+    if (strstr(text, "libyaml: ") != NULL) {
+        char problem[200] = "";
+        line = line_of(yaml, length, "", problem, sizeof problem);
+        return fail(error, error_size, "%s:%zu: expected YAML: %s", name, line, problem);
+    }
+    snprintf(place, sizeof place, "%s:%zu: ", name, line);
+    if (sscanf(text, "Load: Unexpected key: %99[^\n]", word) == 1) {
+        char whole[420];
+        snprintf(whole, sizeof whole, "%s%s%s", path, path[0] != '\0' ? "." : "", word);
+        return scenario_key_unknown(place, whole, error, error_size);
+    }
+    if (strncmp(text, "Load: Expecting ", 16) == 0) {
+        const char *found = strstr(text, "event: ");
+        return fail(error, error_size, "%s%s%sexpected %s, found %s", place, path, after, shape(text + 16),
+                    shape(found != NULL ? found + 7 : ""));
+    }
+    if (sscanf(text, "Load: Missing required mapping field: %99[^\n]", word) == 1) {
+        char *last = strrchr(path, '.'); /* the backtrace names the field read last, which is sound */
+        if (last != NULL) {
+            *last = '\0';
+        }
+        return fail(error, error_size, "%s%s%sexpected a key %s", place, path, after, word);
+    }
+    if (strstr(text, "already seen") != NULL) {
+        return fail(error, error_size, "%s%s%sexpected once, found twice", place, path, after);
+    }
+    return fail(error, error_size, "%s%s%s%.*s", place, path, after, (int)strcspn(text, "\n"), text);
+}
+
+/* The points as --set writes them. Returns NULL with one line in `error`. */
+static char *points_text(const char *yaml, size_t length, const char *name, const struct raw *raw, char *error,
+                         size_t error_size)
+{
+    enum { NUMBER_MAX = 60 };
+    char *text = malloc((size_t)raw->points_count * (3 * NUMBER_MAX + 4) + 1);
+    if (text == NULL) {
+        fail(error, error_size, "%s: no memory", name);
+        return NULL;
+    }
+    char *end = text;
+    for (unsigned i = 0; i < raw->points_count; i++) {
+        const struct raw_point *point = &raw->points[i];
+        const char *members[] = {"x_m", "y_m", "speed_factor"};
+        const char *values[] = {point->x, point->y, point->speed_factor != NULL ? point->speed_factor : "1"};
+        for (size_t j = 0; j < 3; j++) {
+            double number;
+            if (strlen(values[j]) > NUMBER_MAX || !text_number(values[j], strlen(values[j]), &number)) {
+                char path[80], problem[8];
+                snprintf(path, sizeof path, "source.points[%u].%s", i, members[j]);
+                fail(error, error_size, "%s:%zu: %s: expected a number, found '%.60s'", name,
+                     line_of(yaml, length, path, problem, sizeof problem), path, values[j]);
+                free(text);
+                return NULL;
+            }
+            end += sprintf(end, "%s%s", values[j], j < 2 ? "," : (i + 1 < raw->points_count ? ";" : ""));
+        }
+    }
+    *end = '\0';
+    return text;
+}
+
+static char *list_text(const char *name, const struct raw *raw, char *error, size_t error_size)
+{
+    size_t size = 1;
+    for (unsigned i = 0; i < raw->list_count; i++) {
+        size += strlen(raw->list[i]) + 1;
+    }
+    char *text = calloc(size, 1);
+    if (text == NULL) {
+        fail(error, error_size, "%s: no memory", name);
+        return NULL;
+    }
+    for (unsigned i = 0; i < raw->list_count; i++) {
+        strcat(strcat(text, i > 0 ? "," : ""), raw->list[i]);
+    }
+    return text;
+}
+
+static int apply(const char *yaml, size_t length, const char *name, const struct raw *raw, struct scenario *scenario,
+                 char *error, size_t error_size)
+{
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        const struct scenario_key *key = &scenario_keys[i];
+        char *made = NULL;
+        const char *value = raw->values[i];
+        if (key->type == KEY_POINTS && raw->points != NULL) {
+            value = made = points_text(yaml, length, name, raw, error, error_size);
+        } else if (key->type == KEY_LIST && raw->list != NULL) {
+            value = made = list_text(name, raw, error, error_size);
+        }
+        const bool made_badly = made == NULL && (key->type == KEY_POINTS ? raw->points != NULL
+                                                                         : key->type == KEY_LIST && raw->list != NULL);
+        char reason[600], problem[8];
+        const int status =
+            made_badly || value == NULL ? 0 : scenario_set(scenario, key->path, value, reason, sizeof reason);
+        free(made);
+        if (made_badly) {
+            return -1;
+        }
+        if (status != 0) {
+            return fail(error, error_size, "%s:%zu: %s", name,
+                        line_of(yaml, length, key->path, problem, sizeof problem), reason);
+        }
+    }
+    return 0;
+}
+
+int scenario_parse(const char *yaml, size_t length, const char *name, struct scenario *scenario, char *error,
+                   size_t error_size)
+{
+    struct schema schema;
+    struct complaint complaint = {.used = 0};
+    make_schema(&schema);
+    const cyaml_config_t config = {
+        .log_fn = listen,
+        .log_ctx = &complaint,
+        .mem_fn = cyaml_mem,
+        .log_level = CYAML_LOG_WARNING,
+        .flags = CYAML_CFG_NO_ALIAS,
+    };
+    struct raw *raw = NULL;
+    const cyaml_err_t status =
+        cyaml_load_data((const uint8_t *)yaml, length, &config, &schema.root, (cyaml_data_t **)&raw, NULL);
+    int result = 0;
+    if (status != CYAML_OK || complaint.used > 0) {
+        result = explain(yaml, length, name, &complaint, error, error_size);
+    } else if (raw == NULL) {
+        result = fail(error, error_size, "%s:1: expected keys of a scenario, found nothing", name);
+    } else {
+        result = apply(yaml, length, name, raw, scenario, error, error_size);
+    }
+    if (raw != NULL) {
+        cyaml_free(&config, &schema.root, raw, 0);
+    }
+    return result;
+}
+
+int scenario_load(const char *path, struct scenario *scenario, char *error, size_t error_size)
+{
+    size_t length;
+    char *yaml = text_read_file(path, &length, error, error_size);
+    if (yaml == NULL) {
+        return -1;
+    }
+    const int status = scenario_parse(yaml, length, path, scenario, error, error_size);
+    free(yaml);
+    const char *slash = strrchr(path, '/');
+    const char *file = scenario->network.file;
+    if (status != 0 || file[0] == '\0' || file[0] == '/' || slash == NULL) {
+        return status;
+    }
+    char joined[4001];
+    snprintf(joined, sizeof joined, "%.*s/%s", (int)(slash - path), path, file);
+    return scenario_set(scenario, "network.file", joined, error, error_size);
+}
