@@ -11,10 +11,7 @@ __attribute__((noinline)) void bench_counted(void)
     __asm__ volatile(""); /* no tail call: the emulators look for the return */
 }
 
-__attribute__((noinline)) void bench_counted_end(void)
-{
-    __asm__ volatile("");
-}
+__attribute__((noinline)) void bench_counted_end(void) { __asm__ volatile(""); }
 
 static void print_hex(uint32_t value)
 {
