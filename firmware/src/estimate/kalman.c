@@ -55,7 +55,7 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
         }
         started.x[i] = x[i];
     }
-    for (uint_fast8_t i = 0; i < MH_PACKED_SIZE(n); i++) {
+    for (uint_fast8_t i = 0; i < (uint_fast8_t)MH_PACKED_SIZE(n); i++) {
         started.ud[i] = P[i];
     }
     enum mh_status status = factor(n, started.ud, false);
