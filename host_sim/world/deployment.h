@@ -18,8 +18,9 @@ struct deployment {
  *
  * uniform: node i = (width u_2i, height u_2i+1), u from the SplitMix64 stream of `seed`.
  * r2: node i = (width, height) * frac(1/2 + (i + 1 + 1000 seed) * (0.7548776662466927, 0.5698402909980532)), Roberts' R2 sequence.
- * grid: cell-centred, row by row. The number of columns divides the number of nodes and gives the squarest cells: 32 x 40 for 1,280
- *   in a square. Where no divisor makes them squarer than 2 : 1, the last row has fewer nodes, evenly spread.
+ * grid: cell-centred, row by row. The number of columns divides the number of nodes, so that the cells are as square as can be (of
+ *   two equally square ones the one with fewer columns: 32 x 40 for 1,280 in a square). Where that leaves cells longer than
+ *   2 : 1 they are made square and the last row has fewer nodes, evenly spread.
  * file: the nodes of scenario->network.file, sorted.
  *
  * Returns 0, or -1 with one line in `error` (a file that cannot be used, no memory) and nothing to free. */
@@ -31,5 +32,8 @@ int deployment_copy(struct deployment *deployment, const struct recorded_node *n
                     size_t error_size);
 
 void deployment_free(struct deployment *deployment);
+
+/* Index of node `id`, or deployment->count if there is none. O(1) where ids are 0, 1, 2 ..., else O(log n). */
+size_t deployment_find(const struct deployment *deployment, uint32_t id);
 
 #endif

@@ -1,0 +1,101 @@
+#include "trackers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void set_up_luo(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    struct mh_luo_config *config = &choice->config.luo;
+    mh_luo_config_default(config);
+    config->diffusion_m2ps = (mh_real)scenario->tracker.diffusion_m2ps;
+    config->chi = (mh_real)scenario->tracker.chi;
+    config->forgetting = (mh_real)scenario->tracker.forgetting;
+    config->nonlinear = scenario->tracker.nonlinear;
+    if (region) {
+        config->stop_outside = true;
+        config->region = *region;
+    }
+}
+
+static void set_up_diffusion(struct tracker_choice *choice, const struct scenario *scenario,
+                             const struct mh_region *region)
+{
+    struct mh_diffusion_config *config = &choice->config.diffusion;
+    mh_diffusion_config_default(config);
+    config->diffusion_m2ps = (mh_real)scenario->tracker.diffusion_m2ps;
+    config->chi = (mh_real)scenario->tracker.chi;
+    config->release_gps = (mh_real)scenario->tracker.release_gps;
+    config->additive_sd = (mh_real)scenario->tracker.additive_sd;
+    config->relative_sd = (mh_real)scenario->tracker.relative_sd;
+    if (region) {
+        config->region = *region;
+    }
+}
+
+static void set_up_range(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    (void)region;
+    struct mh_range_config *config = &choice->config.range;
+    mh_range_config_default(config);
+    config->range_sd_m = (mh_real)scenario->tracker.range_sd_m;
+    config->acceleration_sd_mps2 = (mh_real)scenario->tracker.acceleration_sd_mps2;
+    config->height_m = (mh_real)scenario->tracker.height_m;
+}
+
+static const struct {
+    const struct mh_tracker *tracker;
+    const char *meaning;
+    enum quantity measures;
+    void (*set_up)(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region);
+} trackers[] = {
+    {&mh_tracker_diffusion, "moving diffusion source: sliding window of its path, fitted with the exact model",
+     QUANTITY_CONCENTRATION, set_up_diffusion},
+    {&mh_tracker_luo, "moving diffusion source: least squares and Sage-Husa filter (Luo, Chai and Yang)",
+     QUANTITY_CONCENTRATION, set_up_luo},
+    {&mh_tracker_range, "ranged target: constant velocity, extended Kalman filter", QUANTITY_RANGE, set_up_range},
+};
+
+enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
+
+bool tracker_describe(size_t i, const char **name, const char **meaning)
+{
+    if (i >= TRACKERS) {
+        return false;
+    }
+    *name = trackers[i].tracker->name;
+    *meaning = trackers[i].meaning;
+    return true;
+}
+
+int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
+                   char *error, size_t error_size)
+{
+    for (size_t i = 0; i < TRACKERS; i++) {
+        if (strcmp(scenario->tracker.name, trackers[i].tracker->name) == 0) {
+            *choice = (struct tracker_choice){.tracker = trackers[i].tracker, .measures = trackers[i].measures};
+            trackers[i].set_up(choice, scenario, region);
+            return 0;
+        }
+    }
+    snprintf(error, error_size, "tracker.name: `%s`, expected diffusion, luo or range", scenario->tracker.name);
+    return -1;
+}
+
+int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
+                    size_t error_size)
+{
+    if (strcmp(name, mh_protocol_collection.name) == 0) {
+        choice->protocol = &mh_protocol_collection;
+        mh_collection_config_default(&choice->config.collection);
+        choice->config.collection.range_mm = (uint32_t)fmin(fmax(scenario->radio.range_m * 1000, 1), 1e9);
+        return 0;
+    }
+    if (strcmp(name, mh_protocol_direct.name) == 0) {
+        choice->protocol = &mh_protocol_direct;
+        mh_direct_config_default(&choice->config.direct);
+        return 0;
+    }
+    snprintf(error, error_size, "network.protocol: `%s`, expected collection or direct", name);
+    return -1;
+}

@@ -1,0 +1,45 @@
+/* The trackers and protocols that a scenario can name, set up as it says. */
+#ifndef MOTEHOUND_SIM_TRACKERS_H
+#define MOTEHOUND_SIM_TRACKERS_H
+
+#include "motehound/collection.h"
+#include "motehound/diffusion.h"
+#include "motehound/direct.h"
+#include "motehound/luo.h"
+#include "motehound/range.h"
+#include "scenario/scenario.h"
+
+/* What a tracker's measurements are. */
+enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
+
+struct tracker_choice {
+    const struct mh_tracker *tracker;
+    enum quantity measures;
+    union {
+        struct mh_luo_config luo;
+        struct mh_diffusion_config diffusion;
+        struct mh_range_config range;
+    } config; /* the tracker's own */
+};
+
+struct protocol_choice {
+    const struct mh_protocol *protocol;
+    union {
+        struct mh_collection_config collection;
+        struct mh_direct_config direct;
+    } config;
+};
+
+/* The tracker that scenario->tracker names. `region` is where the source can be; NULL: unbounded. Returns 0, or -1 with one line in
+ * `error` (no such tracker: names those there are). */
+int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
+                   char *error, size_t error_size);
+
+/* Name and meaning of tracker `i`, from 0; false after the last. */
+bool tracker_describe(size_t i, const char **name, const char **meaning);
+
+/* The protocol called `name`. Returns as tracker_choose. */
+int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
+                    size_t error_size);
+
+#endif

@@ -1,0 +1,143 @@
+#include "world/deployment.h"
+
+#include "engine/random.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void lay_uniform(struct deployment *deployment, double width_m, double height_m, uint64_t seed)
+{
+    const struct random_stream stream = random_stream(seed, RANDOM_DEPLOYMENT);
+    for (size_t i = 0; i < deployment->count; i++) {
+        deployment->nodes[i].x_m = width_m * random_uniform(stream, 2 * i);
+        deployment->nodes[i].y_m = height_m * random_uniform(stream, 2 * i + 1);
+    }
+}
+
+/* The sequence in fixed point, where frac() is the overflow of 64 bits: exact for every index and seed. */
+static void lay_r2(struct deployment *deployment, double width_m, double height_m, uint64_t seed)
+{
+    const uint64_t x_step = (uint64_t)(0.7548776662466927 * 0x1p64), y_step = (uint64_t)(0.5698402909980532 * 0x1p64);
+    const uint64_t half = UINT64_C(1) << 63;
+    for (size_t i = 0; i < deployment->count; i++) {
+        const uint64_t n = i + 1 + 1000 * seed;
+        deployment->nodes[i].x_m = width_m * (double)((half + n * x_step) >> 11) * 0x1p-53;
+        deployment->nodes[i].y_m = height_m * (double)((half + n * y_step) >> 11) * 0x1p-53;
+    }
+}
+
+/* How far cells of that shape are from square: at least 1. */
+static double elongation(double width_m, double height_m, size_t columns, size_t rows)
+{
+    const double ratio = (width_m / (double)columns) / (height_m / (double)rows);
+    return fmax(ratio, 1 / ratio);
+}
+
+static size_t grid_columns(size_t count, double width_m, double height_m)
+{
+    size_t best = 1;
+    for (size_t columns = 2; columns <= count; columns++) {
+        if (count % columns == 0 && elongation(width_m, height_m, columns, count / columns) <
+                                        elongation(width_m, height_m, best, count / best) * (1 - 1e-12)) {
+            best = columns;
+        }
+    }
+    if (elongation(width_m, height_m, best, count / best) <= 2) {
+        return best;
+    }
+    const double square = ceil(sqrt((double)count * width_m / height_m));
+    return (size_t)fmin(fmax(square, 1), (double)count);
+}
+
+static void lay_grid(struct deployment *deployment, double width_m, double height_m)
+{
+    const size_t count = deployment->count;
+    const size_t columns = grid_columns(count, width_m, height_m);
+    const size_t rows = (count + columns - 1) / columns;
+    for (size_t i = 0; i < count; i++) {
+        const size_t row = i / columns;
+        const size_t in_row = row + 1 < rows ? columns : count - row * columns;
+        deployment->nodes[i].x_m = width_m * ((double)(i % columns) + 0.5) / (double)in_row;
+        deployment->nodes[i].y_m = height_m * ((double)row + 0.5) / (double)rows;
+    }
+}
+
+static int by_id(const void *a, const void *b)
+{
+    const uint32_t left = ((const struct recorded_node *)a)->id, right = ((const struct recorded_node *)b)->id;
+    return (left > right) - (left < right);
+}
+
+int deployment_copy(struct deployment *deployment, const struct recorded_node *nodes, size_t count, char *error,
+                    size_t error_size)
+{
+    *deployment = (struct deployment){.nodes = malloc(count * sizeof *nodes + 1), .count = count};
+    if (!deployment->nodes) {
+        snprintf(error, error_size, "out of memory for %zu nodes", count);
+        return -1;
+    }
+    memcpy(deployment->nodes, nodes, count * sizeof *nodes);
+    qsort(deployment->nodes, count, sizeof *nodes, by_id);
+    return 0;
+}
+
+static int from_file(struct deployment *deployment, const char *path, char *error, size_t error_size)
+{
+    struct recording recording = {0};
+    if (recording_load_nodes(path, &recording, error, error_size)) {
+        return -1;
+    }
+    const int result = deployment_copy(deployment, recording.nodes, recording.node_count, error, error_size);
+    recording_free(&recording);
+    return result;
+}
+
+int deployment_make(struct deployment *deployment, const struct scenario *scenario, uint64_t seed, char *error,
+                    size_t error_size)
+{
+    const double width_m = scenario->field.width_m, height_m = scenario->field.height_m;
+    if (scenario->network.layout == LAYOUT_FILE) {
+        return from_file(deployment, scenario->network.file, error, error_size);
+    }
+    *deployment = (struct deployment){.count = (size_t)scenario->network.nodes};
+    deployment->nodes = calloc(deployment->count, sizeof *deployment->nodes);
+    if (!deployment->nodes) {
+        snprintf(error, error_size, "network.nodes: out of memory for %zu nodes", deployment->count);
+        return -1;
+    }
+    for (size_t i = 0; i < deployment->count; i++) {
+        deployment->nodes[i].id = (uint32_t)i;
+    }
+    switch (scenario->network.layout) {
+    case LAYOUT_UNIFORM:
+        lay_uniform(deployment, width_m, height_m, seed);
+        break;
+    case LAYOUT_R2:
+        lay_r2(deployment, width_m, height_m, seed);
+        break;
+    case LAYOUT_GRID:
+        lay_grid(deployment, width_m, height_m);
+        break;
+    case LAYOUT_FILE:
+        break;
+    }
+    return 0;
+}
+
+void deployment_free(struct deployment *deployment)
+{
+    free(deployment->nodes);
+    *deployment = (struct deployment){0};
+}
+
+size_t deployment_find(const struct deployment *deployment, uint32_t id)
+{
+    if (id < deployment->count && deployment->nodes[id].id == id) {
+        return id;
+    }
+    const struct recorded_node key = {.id = id};
+    const struct recorded_node *found = bsearch(&key, deployment->nodes, deployment->count, sizeof key, by_id);
+    return found ? (size_t)(found - deployment->nodes) : deployment->count;
+}

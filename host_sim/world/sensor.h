@@ -1,0 +1,39 @@
+/* What the nodes' sensors make of the field: noise, the converter, readings that never come. */
+#ifndef MOTEHOUND_SIM_WORLD_SENSOR_H
+#define MOTEHOUND_SIM_WORLD_SENSOR_H
+
+#include "engine/random.h"
+#include "motehound/sensor.h"
+#include "scenario/scenario.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* How scenario->sensor converts: the quantum is full_scale / 2^adc_bits, as a whole number of 2^-20 g/m2 (at least 1), so that the
+ * mote's q20_per_count states it exactly; with adc_bits 0 it is 2^-20 g/m2 itself, to the end of Q11.20. Threshold
+ * chi and interval come from scenario->tracker and scenario->sensor. */
+struct mh_sensor_config sensor_config(const struct scenario *scenario);
+
+struct sensors {
+    size_t count;
+    double relative_noise, additive_noise;
+    double counts_per_unit, counts_max;
+    double loss, outage_start_s, outage_end_s;
+    struct random_stream relative_stream, additive_stream, loss_stream;
+    double *noise; /* one row of normals */
+};
+
+/* The sensors of `count` nodes. Returns 0, or -1 if there is no memory (nothing to free). */
+int sensors_make(struct sensors *sensors, const struct scenario *scenario, uint64_t seed, size_t count);
+
+void sensors_free(struct sensors *sensors);
+
+/* concentrations[i] of node i at instant number `instant` -> counts[i]: C (1 + relative g1) + additive g2, clipped at 0 and at the
+ * converter's last count, rounded. g1 and g2 are number (instant x count + i) of their streams. Overwrites concentrations. */
+void sensors_read(const struct sensors *sensors, uint64_t instant, double *concentrations, int32_t *counts);
+
+/* The reading of `node` at instant number `instant`, which is at `time_s`, never comes. */
+bool sensors_lost(const struct sensors *sensors, uint64_t instant, double time_s, size_t node);
+
+#endif

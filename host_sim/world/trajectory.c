@@ -1,0 +1,120 @@
+#include "world/trajectory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double pi = 3.141592653589793;
+
+struct point leg_position(const struct leg *leg, double elapsed_s)
+{
+    const double way = leg->speed_mps * elapsed_s;
+    /* A chord of an arc: its length is way sinc(turn / 2), its direction half the turn on from the heading. */
+    const double half_turn = 0.5 * leg->curvature_radpm * way;
+    const double chord = half_turn == 0 ? way : way * sin(half_turn) / half_turn;
+    const double direction = leg->heading_rad + half_turn;
+    return (struct point){leg->start.x_m + chord * cos(direction), leg->start.y_m + chord * sin(direction)};
+}
+
+struct point trajectory_position(const struct trajectory *trajectory, double time_s)
+{
+    const struct leg *leg = trajectory->legs;
+    const struct leg *last = leg + trajectory->count - 1;
+    while (leg < last && time_s >= leg[1].start_s) {
+        leg++;
+    }
+    return leg_position(leg, fmin(fmax(time_s - leg->start_s, 0), leg->duration_s));
+}
+
+double trajectory_length_m(const struct trajectory *trajectory)
+{
+    double length = 0;
+    for (size_t i = 0; i < trajectory->count; i++) {
+        length += trajectory->legs[i].speed_mps * trajectory->legs[i].duration_s;
+    }
+    return length;
+}
+
+static void append(struct trajectory *trajectory, struct leg leg)
+{
+    leg.start_s = trajectory->duration_s;
+    trajectory->legs[trajectory->count++] = leg;
+    trajectory->duration_s += leg.duration_s;
+}
+
+static void make_waypoints(struct trajectory *trajectory, const struct waypoint *points, unsigned count,
+                           double speed_mps)
+{
+    for (unsigned i = 1; i < count; i++) {
+        const double dx = points[i].x_m - points[i - 1].x_m, dy = points[i].y_m - points[i - 1].y_m;
+        const double speed = speed_mps * points[i].speed_factor;
+        append(trajectory, (struct leg){.duration_s = hypot(dx, dy) / speed,
+                                        .speed_mps = speed,
+                                        .start = {points[i - 1].x_m, points[i - 1].y_m},
+                                        .heading_rad = atan2(dy, dx)});
+    }
+}
+
+static void make_arcs(struct trajectory *trajectory, const struct waypoint *points, double speed_mps)
+{
+    const double dx = points[1].x_m - points[0].x_m, dy = points[1].y_m - points[0].y_m;
+    const double radius = hypot(dx, dy) / (4 * sin(pi / 4));
+    struct leg left = {.duration_s = radius * pi / 2 / speed_mps,
+                       .speed_mps = speed_mps,
+                       .start = {points[0].x_m, points[0].y_m},
+                       .heading_rad = atan2(dy, dx) - pi / 4,
+                       .curvature_radpm = 1 / radius};
+    struct leg right = left;
+    right.start = leg_position(&left, left.duration_s);
+    right.heading_rad = left.heading_rad + pi / 2;
+    right.curvature_radpm = -1 / radius;
+    append(trajectory, left);
+    append(trajectory, right);
+}
+
+int trajectory_make(struct trajectory *trajectory, const struct scenario *scenario, char *error, size_t error_size)
+{
+    const struct waypoint *points = scenario->source.points;
+    const unsigned count = scenario->source.points_count;
+    const double speed = scenario->source.speed_mps;
+    const unsigned least = scenario->source.path == PATH_STILL ? 1 : 2;
+    if (count < least) {
+        snprintf(error, error_size, "source.points: %u given, the path needs at least %u", count, least);
+        return -1;
+    }
+    if (scenario->source.path != PATH_STILL && !(speed > 0)) {
+        snprintf(error, error_size, "source.speed_mps: %g, expected a speed above 0", speed);
+        return -1;
+    }
+    for (unsigned i = 1; scenario->source.path == PATH_WAYPOINTS && i < count; i++) {
+        if (!(points[i].speed_factor > 0)) {
+            snprintf(error, error_size, "source.points[%u]: speed factor %g, expected above 0", i,
+                     points[i].speed_factor);
+            return -1;
+        }
+    }
+    *trajectory = (struct trajectory){.legs = calloc((size_t)count + 1, sizeof *trajectory->legs)};
+    if (!trajectory->legs) {
+        snprintf(error, error_size, "out of memory");
+        return -1;
+    }
+    switch (scenario->source.path) {
+    case PATH_WAYPOINTS:
+        make_waypoints(trajectory, points, count, speed);
+        break;
+    case PATH_ARCS:
+        make_arcs(trajectory, points, speed);
+        break;
+    case PATH_STILL:
+        append(trajectory,
+               (struct leg){.duration_s = scenario->source.duration_s, .start = {points[0].x_m, points[0].y_m}});
+        break;
+    }
+    return 0;
+}
+
+void trajectory_free(struct trajectory *trajectory)
+{
+    free(trajectory->legs);
+    *trajectory = (struct trajectory){0};
+}

@@ -1,0 +1,163 @@
+#include "engine/random.h"
+#include "port.h"
+#include "radio/radio.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PLACES = 600 };
+
+static double x_m[PLACES], y_m[PLACES];
+static struct radio radio;
+
+static const uint8_t bytes[] = "what is sent";
+static struct heard {
+    unsigned times[PLACES], total;
+    bool damaged;
+} heard;
+
+void setUp(void) { radio = (struct radio){0}; }
+void tearDown(void) { radio_free(&radio); }
+
+static void scatter(double width, double height)
+{
+    const struct random_stream stream = random_stream(9, RANDOM_DEPLOYMENT);
+    for (unsigned i = 0; i < PLACES; i++) {
+        x_m[i] = width * (random_uniform(stream, 2 * i) - 0.3);
+        y_m[i] = height * (random_uniform(stream, 2 * i + 1) - 0.3);
+    }
+}
+
+static void hear(void *context, uint32_t receiver, const uint8_t *frame, size_t length)
+{
+    struct heard *what = context;
+    what->times[receiver]++;
+    what->total++;
+    what->damaged |= length != sizeof bytes || memcmp(frame, bytes, length) != 0;
+}
+
+static void send(uint32_t sender, uint32_t destination)
+{
+    uint32_t flight;
+    sim_time takes;
+    TEST_ASSERT_EQUAL_INT(0, radio_send(&radio, sender, destination, bytes, sizeof bytes, &flight, &takes));
+    memset(&heard, 0, sizeof heard);
+    radio_land(&radio, flight, hear, &heard);
+}
+
+static void broadcast_reaches_those_in_range_and_nobody_else(void)
+{
+    static const double shapes[][3] = {{100, 100, 15}, {100, 100, 0.5}, {100, 100, 500},
+                                       {1000, 1, 20},  {1, 1000, 3},    {0, 0, 1}};
+    for (unsigned s = 0; s < sizeof shapes / sizeof shapes[0]; s++) {
+        scatter(shapes[s][0], shapes[s][1]);
+        const struct radio_config config = {shapes[s][2], 0, 250000, 0};
+        TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
+        for (uint32_t sender = 0; sender < PLACES; sender++) {
+            send(sender, RADIO_ALL);
+            TEST_ASSERT_FALSE(heard.damaged);
+            for (uint32_t i = 0; i < PLACES; i++) {
+                const double dx = x_m[i] - x_m[sender], dy = y_m[i] - y_m[sender];
+                const bool in_range = dx * dx + dy * dy <= config.range_m * config.range_m;
+                TEST_ASSERT_EQUAL_UINT(i != sender && in_range, heard.times[i]);
+            }
+        }
+        radio_free(&radio);
+    }
+}
+
+static void without_a_limit_all_hear_all(void)
+{
+    scatter(100, 100);
+    const struct radio_config config = {HUGE_VAL, 0, 250000, 0};
+    TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
+    send(5, RADIO_ALL);
+    TEST_ASSERT_EQUAL_UINT(PLACES - 1, heard.total);
+}
+
+static void unicast_is_handed_to_its_addressee_if_in_range(void)
+{
+    scatter(100, 100);
+    const struct radio_config config = {15, 0, 250000, 0};
+    TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
+    for (uint32_t to = 1; to < PLACES; to++) {
+        send(0, to);
+        const bool in_range = hypot(x_m[to] - x_m[0], y_m[to] - y_m[0]) <= 15;
+        TEST_ASSERT_EQUAL_UINT(in_range, heard.total);
+        TEST_ASSERT_EQUAL_UINT(in_range, heard.times[to]);
+    }
+    TEST_ASSERT_TRUE(radio.sent == PLACES - 1 && radio.received + radio.lost == PLACES - 1 && radio.received > 0);
+}
+
+static void takes_its_delay_and_its_air_time(void)
+{
+    const struct radio_config config = {15, 0.002, 250000, 0};
+    scatter(100, 100);
+    TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
+    uint32_t flight;
+    sim_time takes;
+    TEST_ASSERT_EQUAL_INT(0, radio_send(&radio, 0, RADIO_ALL, bytes, 13, &flight, &takes));
+    TEST_ASSERT_EQUAL_UINT(2000 + (13 + RADIO_HEADER_BYTES) * 32, takes);
+}
+
+/* Each receiver loses its share, and two receivers lose the same frame as often as chance has it. */
+static void loss_is_independent(void)
+{
+    enum { FRAMES = 20000 };
+    const struct radio_config config = {HUGE_VAL, 0, 250000, 0.3};
+    scatter(1, 1);
+    TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, 3, 1));
+    unsigned first = 0, second = 0, both = 0;
+    for (unsigned i = 0; i < FRAMES; i++) {
+        send(0, RADIO_ALL);
+        first += heard.times[1] == 0;
+        second += heard.times[2] == 0;
+        both += heard.times[1] == 0 && heard.times[2] == 0;
+    }
+    const double sd = sqrt(FRAMES * 0.3 * 0.7);
+    TEST_ASSERT_TRUE(fabs(first - 0.3 * FRAMES) < 4 * sd);
+    TEST_ASSERT_TRUE(fabs(second - 0.3 * FRAMES) < 4 * sd);
+    TEST_ASSERT_TRUE(fabs(both - 0.09 * FRAMES) < 4 * sqrt(FRAMES * 0.09 * 0.91));
+    TEST_ASSERT_TRUE(radio.lost == first + second && radio.received == 2 * FRAMES - radio.lost);
+}
+
+/* Receivers answer, which must not disturb the frame that they are being handed. */
+static void relay(void *context, uint32_t receiver, const uint8_t *frame, size_t length)
+{
+    uint32_t flight;
+    sim_time takes;
+    const uint8_t other[MH_FRAME_MAX] = {0};
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_EQUAL_INT(0, radio_send(&radio, receiver, RADIO_ALL, other, sizeof other, &flight, &takes));
+    }
+    hear(context, receiver, frame, length);
+}
+
+static void receivers_may_send(void)
+{
+    const struct radio_config config = {HUGE_VAL, 0, 250000, 0};
+    scatter(100, 100);
+    TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
+    uint32_t flight;
+    sim_time takes;
+    TEST_ASSERT_EQUAL_INT(0, radio_send(&radio, 0, RADIO_ALL, bytes, sizeof bytes, &flight, &takes));
+    memset(&heard, 0, sizeof heard);
+    radio_land(&radio, flight, relay, &heard);
+    TEST_ASSERT_EQUAL_UINT(PLACES - 1, heard.total);
+    TEST_ASSERT_FALSE(heard.damaged);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(broadcast_reaches_those_in_range_and_nobody_else);
+    RUN_TEST(without_a_limit_all_hear_all);
+    RUN_TEST(unicast_is_handed_to_its_addressee_if_in_range);
+    RUN_TEST(takes_its_delay_and_its_air_time);
+    RUN_TEST(loss_is_independent);
+    RUN_TEST(receivers_may_send);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}
