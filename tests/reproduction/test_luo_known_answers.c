@@ -188,18 +188,9 @@ static void expect_the_answers(const char *name, mh_tick interval)
     TEST_ASSERT_TRUE(deviation.filtered <= 0.02);
 }
 
-static void run_of_experiment_1(void)
-{
-    expect_the_answers("g1", 1000);
-}
-static void run_of_experiment_2_with_noise(void)
-{
-    expect_the_answers("g2", 1000);
-}
-static void run_of_experiment_1_at_2_s(void)
-{
-    expect_the_answers("g3", 2000);
-}
+static void run_of_experiment_1(void) { expect_the_answers("g1", 1000); }
+static void run_of_experiment_2_with_noise(void) { expect_the_answers("g2", 1000); }
+static void run_of_experiment_1_at_2_s(void) { expect_the_answers("g3", 2000); }
 
 int main(void)
 {

@@ -24,6 +24,11 @@
 #define MH_HOPS_MAX 64
 #endif
 
+/* Largest number of states of a Kalman filter. A filter costs 4 (n + n (n + 1) / 2) bytes, whatever part of it is used. */
+#ifndef MH_KALMAN_STATES_MAX
+#define MH_KALMAN_STATES_MAX 4
+#endif
+
 #if MH_REPORTS_MAX < 4 || MH_REPORTS_MAX > 4096
 #error "MH_REPORTS_MAX must be 4 to 4096: least squares needs four reports, and the table is searched linearly"
 #endif
@@ -32,6 +37,9 @@
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
+#endif
+#if MH_KALMAN_STATES_MAX < 4 || MH_KALMAN_STATES_MAX > 16
+#error "MH_KALMAN_STATES_MAX must be 4 to 16: the trackers need four; the work grows with the cube, the stack with the square"
 #endif
 
 #endif

@@ -23,12 +23,15 @@ struct mh_luo_config {
     mh_real chi;                       /* selection threshold on concentration, g/m2, 0 to 2000; nominal 0.2 */
     mh_real forgetting;                /* b of the Sage-Husa weight, 0 < b < 1; nominal 0.97 */
     struct mh_sage_husa_config filter; /* start values and floors, m2; nominal: mh_sage_husa_config_default */
-    bool
-        nonlinear; /* solve Eq. (9), started from the answer of (10) and from the reference node, the better one taken; nominal false */
-    bool stop_outside; /* end for good once the track has left `region` after having been well inside; nominal false */
-    struct mh_region
-        region; /* used with stop_outside only; each within +- 1e9; nominal 80 m x 80 m from the origin of the field */
-    int32_t inside_mm; /* "well inside": this far from every border, 0 to 1e9; nominal 5000 */
+
+    /* Solve Eq. (9), once from the answer of (10) and once from the reference node, and take the better one. Nominal false. */
+    bool nonlinear;
+
+    /* End for good once the track has left `region` after having been inside it by at least `inside_mm`, 0 to 1e9, from every
+     * border. Nominal false; region 0 to 80 m (each coordinate within +- 1e9 mm), inside_mm 5000. */
+    bool stop_outside;
+    struct mh_region region;
+    int32_t inside_mm;
 };
 
 /* The state, in the header so that it can be allocated statically; its members are the tracker's own. */

@@ -43,17 +43,18 @@ struct mh_puff_linear {
     struct mh_least_squares equations; /* unknowns: position relative to the reference, age */
 };
 
-/* Begin. `diffusion` in m2/s, > 0. `reference`: one of the samples, best the one with the largest concentration, whose logarithm has the
- * smallest relative error. Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (diffusion or concentration not positive). */
+/* Begin. `diffusion` in m2/s, > 0. `reference`: one of the samples, best the one with the largest concentration, whose
+ * logarithm has the smallest relative error. Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (diffusion or concentration not positive). */
 enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusion,
                                     const struct mh_puff_sample *reference);
 
-/* Take one sample, in any order. The reference itself may come too: its equation 0 = 0 changes nothing but the count.
+/* Take one sample, in any order; the reference is among them (its equation is 0 = 0, but it counts).
  * Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (concentration not positive). */
 enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_puff_sample *sample);
 
-/* The exact minimiser. The mass is the one that gives the reference its concentration, 0 where the age is 0. Where the samples
- * determine the position for a given age but not the age, the age is age_max. Errors: MH_ERR_ARGUMENT (age_max < 0 or NaN),
+/* The exact minimiser. The mass is the one that gives the reference its concentration (e^20 times its share at most, where the
+ * position is far off for the age), 0 where the age is 0. Where the samples determine the position for a given age but not the
+ * age, the age is age_max. Errors: MH_ERR_ARGUMENT (age_max < 0 or NaN),
  * MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN, the reference included), MH_ERR_SINGULAR (nodes on one line). */
 enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real age_max, struct mh_puff_answer *answer);
 
@@ -80,9 +81,9 @@ enum mh_status mh_puff_nonlinear_begin(struct mh_puff_nonlinear *fit, mh_real di
 /* Take one sample of a pass, in any order. Cost: one exponential, four square roots. Errors: as mh_puff_linear_add. */
 enum mh_status mh_puff_nonlinear_add(struct mh_puff_nonlinear *fit, const struct mh_puff_sample *sample);
 
-/* A pass is complete. MH_NONE: another one is wanted, with the same samples; at most 24 in all. MH_OK: `answer` and fit->cost hold the best
- * puff found; its bound is low at MH_PUFF_AGE_SHARE_MIN age_max. Errors: MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN),
- * MH_ERR_SINGULAR (at the start the samples do not determine the puff). */
+/* A pass is complete. MH_NONE: another one is wanted, with the same samples; at most 24 in all. MH_OK: `answer` and
+ * fit->cost hold the best puff found; its bound is low at MH_PUFF_AGE_SHARE_MIN age_max. Errors: MH_ERR_TOO_FEW (fewer than
+ * MH_PUFF_SAMPLES_MIN), MH_ERR_SINGULAR (at the start the samples do not determine the puff). */
 enum mh_status mh_puff_nonlinear_advance(struct mh_puff_nonlinear *fit, struct mh_puff_answer *answer);
 
 #endif

@@ -34,6 +34,9 @@ extern uint8_t __heap_start[]; /* the end of the variables; there is no heap */
 #define STACK_LIMIT __heap_start
 #include "stack_paint.h"
 
+/* avr-libc's exit(), which main() returns to with its result in r24, ends by running the code in the .fini sections */
+__attribute__((naked, used, section(".fini1"))) static void end_of_main(void) { __asm__ volatile("cli\n\tsleep"); }
+
 /* an interrupt that nobody asked for */
 ISR(BADISR_vect)
 {

@@ -41,8 +41,8 @@ enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusio
     return MH_OK;
 }
 
-/* Eq. (A2) of the sample minus that of the reference, with the position relative to the reference and the age s = t - tau for unknowns:
- * 2 dx e + 2 dy n + 4 D ln(c_Q / c_k) s = dx^2 + dy^2. */
+/* Eq. (A2) of the sample minus that of the reference; unknowns are the position (e, n) relative to the reference and the age
+ * s = t - tau: 2 dx e + 2 dy n + 4 D ln(c_Q / c_k) s = dx^2 + dy^2. */
 enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_puff_sample *sample)
 {
     const enum mh_status status = check(sample);

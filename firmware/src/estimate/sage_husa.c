@@ -8,10 +8,7 @@ void mh_sage_husa_config_default(struct mh_sage_husa_config *config)
     *config = nominal;
 }
 
-static bool is_variance(mh_real a)
-{
-    return a >= 1e-12f && a <= 1e9f;
-}
+static bool is_variance(mh_real a) { return a >= 1e-12f && a <= 1e9f; }
 
 enum mh_status mh_sage_husa_init(struct mh_sage_husa *filter, const struct mh_sage_husa_config *config,
                                  mh_real estimate)

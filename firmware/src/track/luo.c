@@ -66,8 +66,8 @@ struct instant {
     const struct mh_luo *luo;
     const struct mh_measurement *measurements;
     size_t count;
-    const struct mh_measurement
-        *reference; /* largest concentration, of equals the lowest node; NULL if none takes part */
+    /* largest concentration, of equals the lowest node; NULL if none takes part */
+    const struct mh_measurement *reference;
 };
 
 static struct instant gather(const struct mh_luo *luo, const struct mh_measurement *measurements, size_t count)

@@ -1,0 +1,60 @@
+/* Kalman filter core, linear or extended, updated with one scalar measurement at a time.
+ *
+ * The covariance is kept as P = U D U' (U unit upper triangular, D diagonal and positive), so it is symmetric positive
+ * definite by construction: Bierman's measurement update never subtracts one variance from another, and the time update
+ * factors F P F' + Q anew with a floor under every element of D. A vector measurement with independent noise is its elements,
+ * one update each; they need not belong to the same instant.
+ *
+ * Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, chapter V. Several filters may run side by
+ * side: nothing is shared. Stack: 4 (n^2 + n (n + 1) / 2) bytes in predict, 8 n in update, and a few registers. */
+#ifndef MOTEHOUND_KALMAN_H
+#define MOTEHOUND_KALMAN_H
+
+#include "motehound/config.h"
+#include "motehound/real.h"
+#include "motehound/status.h"
+
+/* Symmetric matrices travel as their upper triangle, column by column: (0,0), (0,1), (1,1), (0,2), ... */
+#define MH_PACKED_SIZE(n) ((n) * ((n) + 1) / 2)
+#define MH_PACKED(row, column) ((column) * ((column) + 1) / 2 + (row)) /* row <= column */
+
+struct mh_kalman {
+    uint8_t n;                                               /* states, 1 to MH_KALMAN_STATES_MAX */
+    mh_real x[MH_KALMAN_STATES_MAX];                         /* the estimate; its owner may read it, and shift it */
+    mh_real ud[MH_PACKED_SIZE(MH_KALMAN_STATES_MAX)];        /* packed: D on the diagonal, U above it */
+};
+
+/* Innovation gate: refuses a measurement whose innovation exceeds `sigmas` of its own standard deviations, but at most `patience` of
+ * them in a row. The next one is believed: the covariance is widened until that innovation stands just at the gate, and the
+ * update is made. So an outlier is kept out, and a filter that has lost its target is not locked out for good. */
+struct mh_gate {
+    mh_real sigmas;   /* > 0 */
+    uint8_t patience; /* >= 0 */
+    uint8_t refused;  /* so far in a row; starts at 0 */
+};
+
+/* Begin at x with covariance P (packed). Errors: MH_ERR_ARGUMENT (n out of range), MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (P is not
+ * positive definite to the precision of mh_real). */
+enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real *x, const mh_real *P);
+
+/* x = F x, P = F P F' + Q. F: n x n, row by row; Q: packed, positive semidefinite. A direction whose variance is lost in the
+ * rounding of a larger one keeps 2^-21 of that one. Leading zeros of the rows of F cost nothing: about n (n + 1) (2 n + 10) / 6
+ * multiplications for an upper triangular F, about n^2 (n + 4) for a full one; n divisions.
+ * Errors: MH_ERR_NOT_FINITE (an input, or the result overflows). */
+enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q);
+
+/* Take one scalar z = h' x + noise, as `innovation` = z - h' x (for an EKF: z minus the predicted measurement, with h its
+ * gradient at x), with noise variance R = `variance` > 0. gate may be NULL. 3 n^2 / 2 + 9 n / 2 multiplications, 2 n + 1 divisions.
+ * Errors: MH_NONE (refused by the gate, which counts it; the filter is untouched), MH_ERR_NOT_FINITE (an input, or h' P h
+ * overflows), MH_ERR_ARGUMENT (variance not above 0). */
+enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_real innovation, mh_real variance,
+                                struct mh_gate *gate);
+
+/* P, packed. */
+void mh_kalman_covariance(const struct mh_kalman *filter, mh_real *P);
+
+/* F and Q of motion at constant velocity in the plane for dt seconds, states (x, y, vx, vy), with white acceleration of
+ * `intensity` (m/s2)2 s in each axis (Bar-Shalom, Li and Kirubarajan, 2001, Eq. (6.2.2-12)). F: 16 elements, Q: 10, packed. */
+void mh_kalman_constant_velocity(mh_real dt, mh_real intensity, mh_real *F, mh_real *Q);
+
+#endif
