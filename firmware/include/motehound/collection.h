@@ -9,7 +9,7 @@
  *
  * Requests travel from the head towards a place: of all that hear one, the node nearest to the centre waits least and relays,
  * the others hear that and stay silent (contention-based forwarding, Fuessler et al., 2003), until one broadcast covers the
- * whole radius. A radius that no single broadcast covers is flooded with suppression, inside the radius only. Where no node
+ * whole radius. Nodes within about 30 degrees of the straight line go first: they all hear each other. A radius that no single broadcast covers is flooded with suppression, inside the radius only. Where no node
  * is nearer to the centre than the last relay, the request ends.
  *
  * Several sinks divide the field: each node belongs to the one with the fewest hops. Every mote relays, so every radio
@@ -21,7 +21,8 @@
 
 struct mh_collection_config {
     mh_tick beacon_period;  /* between the sink's rounds of beacons, ticks, 1,000 to 3,600,000 */
-    mh_tick relay_wait;     /* longest wait before a relay, ticks, 1 to 1,000 */
+    mh_tick beacon_wait;    /* longest wait before a beacon is relayed, ticks, 1 to 1,000; the radio should send many frames in it */
+    mh_tick request_wait;   /* longest wait before a request is relayed, ticks, 1 to 1,000 */
     uint8_t suppress_after; /* copies heard that make a relay needless, >= 1 */
     uint32_t range_mm;      /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
 };
@@ -54,7 +55,7 @@ struct mh_collection {
 
 extern const struct mh_protocol mh_protocol_collection;
 
-/* nominal configuration: 30 s, 20 ms, 3 copies, 15 m */
+/* nominal configuration: 30 s, 100 ms, 40 ms, 3 copies, 15 m */
 void mh_collection_config_default(struct mh_collection_config *config);
 
 #endif

@@ -2,15 +2,9 @@
 
 #include <string.h>
 
-static mh_tick earlier(mh_tick a, mh_tick b)
-{
-    return mh_tick_before(a, b) ? a : b;
-}
+static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a : b; }
 
-static bool has_come(mh_tick time, mh_tick now)
-{
-    return !mh_tick_before(now, time);
-}
+static bool has_come(mh_tick time, mh_tick now) { return !mh_tick_before(now, time); }
 
 /* A number below `limit` that differs between neighbours and from round to round: both are mixed by a multiplicative hash
  * (the finaliser of MurmurHash3). */
@@ -23,21 +17,26 @@ static mh_tick spread(const struct mh_collection *c, mh_tick limit)
     return (mh_tick)((uint64_t)hash * limit >> 32);
 }
 
+/* floor of the square root, digit by digit in base 4 */
+static uint32_t root(uint64_t square)
+{
+    uint64_t result = 0;
+    for (uint64_t bit = (uint64_t)1 << 62; bit != 0; bit >>= 2) {
+        const uint64_t trial = result + bit;
+        result >>= 1;
+        if (square >= trial) {
+            square -= trial;
+            result += bit;
+        }
+    }
+    return (uint32_t)result;
+}
+
 static uint32_t distance_mm(const struct mh_place *a, const struct mh_place *b)
 {
     const int64_t dx = (int64_t)a->x_mm - b->x_mm;
     const int64_t dy = (int64_t)a->y_mm - b->y_mm;
-    uint64_t rest = (uint64_t)(dx * dx + dy * dy);
-    uint64_t root = 0; /* digit by digit, base 4 */
-    for (uint64_t bit = (uint64_t)1 << 62; bit != 0; bit >>= 2) {
-        const uint64_t trial = root + bit;
-        root >>= 1;
-        if (rest >= trial) {
-            rest -= trial;
-            root += bit;
-        }
-    }
-    return (uint32_t)root;
+    return root((uint64_t)(dx * dx + dy * dy));
 }
 
 static void arm(struct mh_collection *c)
@@ -89,7 +88,7 @@ static void wait_to_relay_beacon(struct mh_collection *c, mh_tick now)
 {
     c->beacon_waits = true;
     c->beacon_copies = 0;
-    c->beacon_time = now + 1 + spread(c, c->config->relay_wait);
+    c->beacon_time = now + 1 + spread(c, c->config->beacon_wait);
 }
 
 static bool is_better(const struct mh_collection *c, const mh_beacon_t *beacon)
@@ -186,10 +185,20 @@ static void consider_request(struct mh_collection *c, mh_tick now, const mh_requ
     }
     const uint32_t progress = from_here < from_sender ? from_sender - from_here : 0;
     const uint32_t missing = progress < range ? range - progress : 0;
+    /* the square root spreads the few that are nearly the best */
+    mh_tick wait = (mh_tick)((uint64_t)c->config->request_wait * root((uint64_t)missing * range) / range);
+    /* progress at least cos 30 degrees of the hop: such nodes stand in a sector as wide as its radius, so they hear each other */
+    const bool ahead = (uint64_t)8 * progress >= (uint64_t)7 * distance_mm(&c->node->place, sender);
+    if (!ahead && from_here > interest->radius_mm) {
+        wait += c->config->request_wait;
+        if (progress < range / 2) {
+            return;
+        }
+    }
     c->request = *request;
     c->request_waits = true;
     c->request_copies = 0;
-    c->request_time = now + 1 + (mh_tick)((uint64_t)c->config->relay_wait * missing / range);
+    c->request_time = now + 1 + wait;
 }
 
 static void hear_request(struct mh_collection *c, mh_tick now, const mh_request_t *request)
@@ -229,7 +238,8 @@ static enum mh_status init(void *state, const void *config, const struct mh_prot
     struct mh_collection *c = state;
     const struct mh_collection_config *chosen = config;
     if (!c || !chosen || !node || chosen->beacon_period < 1000 || chosen->beacon_period > 3600000u ||
-        chosen->relay_wait < 1 || chosen->relay_wait > 1000 || chosen->suppress_after < 1 || chosen->range_mm < 1 ||
+        chosen->beacon_wait < 1 || chosen->beacon_wait > 1000 || chosen->request_wait < 1 ||
+        chosen->request_wait > 1000 || chosen->suppress_after < 1 || chosen->range_mm < 1 ||
         chosen->range_mm > 1000000000u) {
         return MH_ERR_ARGUMENT;
     }
@@ -245,7 +255,7 @@ static void start(void *state, mh_tick now)
     if (c->node->is_head) {
         c->sink = c->node->id;
         c->joined = true;
-        c->upkeep_time = now + c->config->relay_wait; /* the others need a moment to come up */
+        c->upkeep_time = now + c->config->beacon_wait; /* the others need a moment to come up */
     } else {
         /* soon: a node that the first round does not reach should not wait for the second */
         c->upkeep_time = now + c->config->beacon_period / 8 + spread(c, c->config->beacon_period / 8);
@@ -354,6 +364,6 @@ const struct mh_protocol mh_protocol_collection = {
 void mh_collection_config_default(struct mh_collection_config *config)
 {
     const struct mh_collection_config nominal = {
-        .beacon_period = 30000, .relay_wait = 20, .suppress_after = 3, .range_mm = 15000};
+        .beacon_period = 30000, .beacon_wait = 100, .request_wait = 40, .suppress_after = 3, .range_mm = 15000};
     *config = nominal;
 }
