@@ -138,7 +138,7 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
     net.sent[message.kind]++;
     if (message.kind == MH_MESSAGE_REPORT) {
         const unsigned origin = (unsigned)message.as.report.origin;
-        net.asked[origin] |= (message.as.report.flags & MH_MEASUREMENT_ASKED) != 0;
+        net.asked[origin] |= sender == origin && (message.as.report.flags & MH_MEASUREMENT_ASKED) != 0;
         if (destination == SINK) {
             const unsigned detour = message.as.report.hops + 1u - net.bfs_hops[origin];
             net.arrived++;

@@ -32,7 +32,7 @@ static inline bool mh_place_within(const struct mh_place *a, const struct mh_pla
 {
     int64_t dx = (int64_t)a->x_mm - b->x_mm;
     int64_t dy = (int64_t)a->y_mm - b->y_mm;
-    return dx * dx + dy * dy <= (int64_t)radius_mm * radius_mm;
+    return (uint64_t)(dx * dx + dy * dy) <= (uint64_t)radius_mm * radius_mm;
 }
 
 /* place - origin in metres, horizontal part. */
