@@ -1,0 +1,8 @@
+#!/bin/sh
+# run.sh SOURCE_FOLDER MOTEHOUND: pytest on tools/, or skipped (77) where its environment is absent.
+python=$1/.deps/venv/bin/python
+if ! "$python" -c 'import jinja2, matplotlib, pytest, rich, scipy' 2>/dev/null; then
+    echo "skipped: $python does not have the packages of tools/requirements.txt; run tools/setup"
+    exit 77
+fi
+cd "$1/tools" && MOTEHOUND=$2 PYTHONDONTWRITEBYTECODE=1 exec "$python" -m pytest -q -p no:cacheprovider tests

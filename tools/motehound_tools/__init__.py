@@ -1,0 +1,1 @@
+"""Reports, sweeps and reference figures for the command `motehound`."""

@@ -1,0 +1,112 @@
+"""python -m motehound_tools report | sweep | results | picture | bound"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from .failure import Failure
+
+
+def parser() -> argparse.ArgumentParser:
+    top = argparse.ArgumentParser(prog="motehound_tools", description="Reports, sweeps and reference figures for motehound.")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    report = commands.add_parser("report", help="one HTML page from an output folder of the command or of a sweep")
+    report.add_argument("folder", type=Path, metavar="OUT_DIR")
+    report.add_argument("--html", type=Path, help="the page to write (OUT_DIR/report.html)")
+
+    sweep = commands.add_parser("sweep", help="run a scenario for each value of a key; finished values are skipped")
+    sweep.add_argument("scenario", metavar="SCENARIO")
+    sweep.add_argument("--key", required=True, help="such as sensor.interval_s")
+    sweep.add_argument("--values", required=True, help="separated by commas")
+    sweep.add_argument("--runs", type=int, default=50)
+    sweep.add_argument("--seed", type=int, default=0)
+    sweep.add_argument("--out", type=Path, required=True)
+    sweep.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="for every value; may be repeated")
+
+    results = commands.add_parser("results", help="run the published experiments and write the table of results")
+    results.add_argument("--quick", action="store_true", help="5 seeds instead of 50")
+    results.add_argument("--out", type=Path, default=Path("out/results"), help="where the runs go; finished ones are kept")
+    results.add_argument("--markdown", type=Path, help="the page to write (docs/results.md; with --quick out/results-quick.md)")
+
+    picture = commands.add_parser("picture", help="draw the README's picture of a tracked source")
+    picture.add_argument("--out", type=Path, default=Path("out/picture"), help="where the runs go")
+    picture.add_argument("--image", type=Path, default=Path("docs/images/tracked_source.svg"))
+
+    bound = commands.add_parser("bound", help="posterior Cramer-Rao bound of an output folder's scenario")
+    bound.add_argument("folder", type=Path, metavar="OUT_DIR")
+    bound.add_argument("--seeds", type=int, default=4, help="deployments to average over")
+
+    for one in (sweep, results, picture):
+        one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
+    return top
+
+
+def settings(pairs: list[str]) -> dict[str, str]:
+    chosen = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key:
+            raise Failure(f"--set {pair}: expected KEY=VALUE")
+        chosen[key] = value
+    return chosen
+
+
+def perform(arguments: argparse.Namespace) -> None:
+    # Each part is imported when it is asked for: drawing alone takes a second to load.
+    if arguments.command == "report":
+        from . import report
+
+        page = arguments.html or arguments.folder / "report.html"
+        report.write(arguments.folder, page)
+        print(page)
+    elif arguments.command == "sweep":
+        from . import command, sweep
+
+        values = [value.strip() for value in arguments.values.split(",") if value.strip()]
+        if not values or arguments.runs < 1:
+            raise Failure("--values needs at least one value and --runs at least 1")
+        program = command.find(arguments.motehound)
+        sweep.run(
+            program, arguments.scenario, arguments.key, values, arguments.runs, arguments.seed, arguments.out, settings(arguments.set)
+        )
+    elif arguments.command == "results":
+        from . import command, results
+
+        page = arguments.markdown or Path("out/results-quick.md" if arguments.quick else "docs/results.md")
+        results.write(command.find(arguments.motehound), arguments.out, page, 5 if arguments.quick else 50)
+        print(page)
+    elif arguments.command == "picture":
+        from . import command, picture
+
+        picture.write(command.find(arguments.motehound), arguments.out, arguments.image)
+        print(arguments.image)
+    elif arguments.command == "bound":
+        from . import bound
+        from .scenario import Scenario
+
+        found = bound.over_deployments(Scenario.read(arguments.folder / "scenario.json"), arguments.seeds)
+        print("prior of the acceleration, m/s2   rms, m   median, m")
+        for prior, figures in found.items():
+            print(f"{prior:>30}   {figures['rms_m']:6.3f}   {figures['median_m']:9.3f}")
+
+
+def main() -> int:
+    arguments = parser().parse_args()
+    try:
+        perform(arguments)
+    except Failure as failure:
+        print(f"motehound_tools: {failure}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        return 1
+    except KeyboardInterrupt:
+        print("motehound_tools: interrupted", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

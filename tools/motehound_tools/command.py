@@ -1,0 +1,43 @@
+"""The command `motehound`: where it is and how a run of it is started."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from .failure import Failure
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def find(named: str | None) -> Path:
+    """The program that was named, or $MOTEHOUND, or this checkout's build, or the first on the PATH."""
+    for wanted in (named, os.environ.get("MOTEHOUND")):
+        if wanted:
+            path = shutil.which(wanted)
+            if path is None:
+                raise Failure(f"{wanted}: no such program")
+            return Path(path)
+    built = [path for path in ROOT.glob("build/host*/host_sim/**/motehound") if path.is_file() and os.access(path, os.X_OK)]
+    if built:
+        return max(built, key=lambda path: path.stat().st_mtime)
+    installed = shutil.which("motehound")
+    if installed:
+        return Path(installed)
+    raise Failure("motehound: not found in build/host or on the PATH; build it or name it with --motehound")
+
+
+def run(program: Path, scenario: str, out: Path, runs: int, seed: int, settings: dict[str, str], jobs: int | None = None) -> None:
+    """One `motehound run` into `out`."""
+    call = [str(program), "run", scenario, "--runs", str(runs), "--seed", str(seed), "--out", str(out)]
+    if jobs:
+        call += ["--jobs", str(jobs)]
+    for key, value in settings.items():
+        call += ["--set", f"{key}={value}"]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run(call, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode:
+        lines = done.stderr.strip().splitlines()
+        raise Failure(lines[-1] if lines else f"{program}: exit status {done.returncode}")

@@ -1,0 +1,154 @@
+"""One self-contained HTML page from an output folder."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import math
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+from . import figures, output
+from .failure import Failure
+from .figures import Picture
+from .output import Output, Sweep
+
+MEANING = {
+    "position_rmse_m": "root mean square error of the position, m",
+    "position_median_m": "median error of the position, m",
+    "position_p95_m": "95th percentile of the error, m",
+    "raw_position_rmse_m": "root mean square error before the filter, m",
+    "position_rmse_at_arrival_m": "error against the position at the estimated time of arrival, m",
+    "tracked_share": "share of the samples that gave a position",
+    "track_lost": "1 if the track was lost, 0 if not",
+    "nees_median": "median normalised squared error (1.39 is exact)",
+    "frames_sent": "frames sent by all motes",
+}
+HEADLINES = (
+    ("position_median_m", "median error", "m"),
+    ("position_p95_m", "95th percentile", "m"),
+    ("position_rmse_m", "RMSE", "m"),
+    ("tracked_share", "samples with a position", "%"),
+    ("track_lost", "tracks lost", "%"),
+    ("nees_median", "median NEES (exact: 1.39)", ""),
+)
+
+
+def number(value: object) -> str:
+    """Three significant digits, without exponents for the sizes that occur."""
+    if not isinstance(value, (int, float)) or not math.isfinite(value):
+        return "–"
+    if value == int(value) and abs(value) < 1e9:
+        return f"{int(value):,}"
+    digits = max(0, 2 - math.floor(math.log10(abs(value))))
+    return f"{value:,.{min(digits, 6)}f}"
+
+
+def as_image(picture: Picture) -> str:
+    """The figure as an <img>, its SVG inside the page: nothing is fetched, and ids of one figure cannot touch another's."""
+    data = base64.b64encode(picture.svg.encode()).decode()
+    alternative = html.escape(f"{picture.title}. {picture.caption}", quote=True)
+    return f'<img src="data:image/svg+xml;base64,{data}" alt="{alternative}">'
+
+
+def figure(results: Output, metric: str, unit: str) -> str:
+    return number(results.pooled(metric, "mean") * (100.0 if unit == "%" else 1.0))
+
+
+def headline(results: Output) -> list[tuple[str, str, str]]:
+    """(label, value, unit) of the figures that are said first."""
+    known = [head for head in HEADLINES if math.isfinite(results.pooled(head[0], "mean"))]
+    return [(label, figure(results, metric, unit), unit) for metric, label, unit in known]
+
+
+def statistics(results: Output) -> list[dict[str, str]]:
+    rows = []
+    for name, entry in results.summary["metrics"].items():
+        row = {key: number(entry[key]) for key in output.STATISTICS}
+        pooled = results.summary.get("pooled", {}).get(name)
+        rows.append({"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled["mean"]) if pooled else "", **row})
+    return rows
+
+
+def facts(results: Output, varied: str) -> list[tuple[str, str]]:
+    """What was run, in words; without the key that a sweep varies."""
+    runs = len(results.runs["run"])
+    said = [("runs", f"{runs:,}"), ("first seed", str(results.summary.get("seed", "–")))]
+    if results.scenario:
+        scenario = results.scenario.sections
+        for label, section, key, unit in (
+            ("tracker", "tracker", "name", ""),
+            ("nodes", "network", "nodes", ""),
+            ("layout", "network", "layout", ""),
+            ("sampling interval", "sensor", "interval_s", " s"),
+            ("speed", "source", "speed_mps", " m/s"),
+            ("relative noise", "sensor", "relative_noise", ""),
+            ("additive noise", "sensor", "additive_noise", " g/m²"),
+        ):
+            if key in scenario.get(section, {}) and f"{section}.{key}" != varied:
+                value = scenario[section][key]
+                said.append((label, f"{value:g}{unit}" if isinstance(value, (int, float)) else f"{value}{unit}"))
+    return said
+
+
+def pictures(results: Output) -> list[Picture]:
+    if not len(results.track["run"]):
+        return []
+    run = figures.typical_run(results)
+    drawn = [
+        figures.field_picture(results),
+        figures.track_picture(results, run),
+        figures.error_picture(results),
+        figures.distribution_picture(results),
+    ]
+    return [picture for picture in drawn if picture]
+
+
+def render(found: Output | Sweep) -> str:
+    first = found.outputs[0] if isinstance(found, Sweep) else found
+    environment = Environment(
+        loader=PackageLoader("motehound_tools"),
+        autoescape=select_autoescape(["html", "j2"]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    sweep = found if isinstance(found, Sweep) else None
+    columns = [head for head in HEADLINES if math.isfinite(first.pooled(head[0], "mean"))]
+    across = figures.sweep_picture(sweep) if sweep else None
+    middle = sweep.outputs[len(sweep.outputs) // 2] if sweep else first
+    return environment.get_template("report.html.j2").render(
+        name=str(first.summary.get("scenario", "motehound")),
+        description=str(first.scenario.sections.get("description", "")) if first.scenario else "",
+        version=str(first.summary.get("version", "unknown")),
+        facts=facts(middle, sweep.key if sweep else ""),
+        headline=headline(middle),
+        sweep=sweep,
+        across=across,
+        swept=[
+            {"value": f"{value:g}", "cells": [figure(o, metric, unit) for metric, _, unit in columns]}
+            for value, o in zip(sweep.values, sweep.outputs)
+        ]
+        if sweep
+        else [],
+        columns=columns,
+        middle_value=f"{sweep.values[len(sweep.values) // 2]:g}" if sweep else "",
+        pictures=pictures(middle),
+        statistics=statistics(middle),
+        has_pooled=bool(middle.summary.get("pooled")),
+        scenario=json.dumps(middle.scenario.sections, indent=2) if middle.scenario else "",
+        as_image=as_image,
+    )
+
+
+def write(folder: Path, page: Path) -> None:
+    """Render first, then put the page in place, so that a failure leaves no half of it."""
+    text = render(output.read(folder))
+    part = page.with_name(page.name + ".part")
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(page)
+    except OSError as error:
+        raise Failure(f"{page}: cannot be written: {error.strerror}") from None

@@ -1,0 +1,198 @@
+"""The page from an output folder, and what is said when the folder is not one."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import write_output
+from motehound_tools import metrics, output, sweep
+from motehound_tools.report import number
+
+TOOLS = Path(__file__).resolve().parents[1]
+
+
+def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "motehound_tools", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(TOOLS)},
+    )
+
+
+class Page(HTMLParser):
+    """Checks that tags nest, and collects what the page shows."""
+
+    EMPTY = {"meta", "img", "br", "link"}
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.images: list[dict[str, str | None]] = []
+        self.links: list[str] = []
+        self.text = ""
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+        given = dict(attrs)
+        if tag == "img":
+            self.images.append(given)
+        self.links += [value or "" for name, value in attrs if name in ("src", "href")]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_page_of_a_run(folder: Path) -> None:
+    done = call("report", folder)
+    assert done.returncode == 0, done.stderr
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    titles = [str(image["alt"]).partition(".")[0] for image in page.images]
+    assert titles == ["Field", "Track", "Error against time", "Distribution"]
+    assert all(link.startswith("data:image/svg+xml;base64,") for link in page.links)  # nothing is fetched
+    assert "position_rmse_m" in page.text
+    assert number(output.read(folder).statistic("position_rmse_m")) in page.text  # type: ignore[union-attr]
+
+
+def test_same_folder_same_bytes(folder: Path) -> None:
+    for name in ("a.html", "b.html"):
+        assert call("report", folder, "--html", folder / name).returncode == 0
+    assert (folder / "a.html").read_bytes() == (folder / "b.html").read_bytes()
+
+
+def test_page_of_a_sweep(tmp_path: Path) -> None:
+    for value in (0.5, 1, 10):
+        write_output(tmp_path / f"sensor.interval_s={value}", error_m=value / 3.0)
+    done = call("report", tmp_path, "--html", tmp_path / "page.html")
+    assert done.returncode == 0, done.stderr
+    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
+    assert str(page.images[0]["alt"]).startswith("Error against sampling interval")
+    found = output.read(tmp_path)
+    assert isinstance(found, output.Sweep) and found.values == [0.5, 1.0, 10.0]
+
+
+def test_page_without_scenario_and_truth(folder: Path) -> None:
+    (folder / "scenario.json").unlink()
+    lines = (folder / "track.csv").read_text().splitlines()
+    blind = [lines[0]] + [",".join([*line.split(",")[:8], "", "", *line.split(",")[10:]]) for line in lines[1:]]
+    (folder / "track.csv").write_text("\n".join(blind) + "\n")
+    assert call("report", folder).returncode == 0
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    assert [str(image["alt"]).partition(".")[0] for image in page.images] == ["Track"]
+
+
+def test_page_without_estimates(folder: Path) -> None:
+    (folder / "track.csv").write_text((folder / "track.csv").read_text().splitlines()[0] + "\n")
+    assert call("report", folder).returncode == 0
+    assert "no estimate" in Page((folder / "report.html").read_text(encoding="utf-8")).text
+
+
+def _no_folder(folder: Path) -> Path:
+    return folder / "absent"
+
+
+def _no_summary(folder: Path) -> Path:
+    (folder / "summary.json").unlink()
+    return folder
+
+
+def _broken_summary(folder: Path) -> Path:
+    (folder / "summary.json").write_text("{")
+    return folder
+
+
+def _summary_without_statistics(folder: Path) -> Path:
+    (folder / "summary.json").write_text(json.dumps({"metrics": {"position_rmse_m": {"mean": 1}}}))
+    return folder
+
+
+def _missing_column(folder: Path) -> Path:
+    text = (folder / "track.csv").read_text()
+    (folder / "track.csv").write_text(text.replace("raw_x_m", "other", 1))
+    return folder
+
+
+def _short_row(folder: Path) -> Path:
+    with (folder / "track.csv").open("a") as stream:
+        stream.write("1,2\n")
+    return folder
+
+
+def _word_for_number(folder: Path) -> Path:
+    lines = (folder / "track.csv").read_text().splitlines()
+    fields = lines[2].split(",")
+    fields[3] = "here"
+    lines[2] = ",".join(fields)
+    (folder / "track.csv").write_text("\n".join(lines) + "\n")
+    return folder
+
+
+def _scenario_without_field(folder: Path) -> Path:
+    (folder / "scenario.json").write_text('{"metrics": {"skip_first": 3}}')
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (_no_folder, "no such folder"),
+        (_no_summary, "summary.json: No such file"),
+        (_broken_summary, "summary.json: not JSON"),
+        (_summary_without_statistics, "`position_rmse_m` needs mean, std"),
+        (_missing_column, "track.csv:1: the column `raw_x_m` is missing"),
+        (_short_row, "2 fields, expected 17"),
+        (_word_for_number, "track.csv:3: `x_m` is not a number"),
+        (_scenario_without_field, "scenario.json: the key `field.width_m` is missing"),
+    ],
+)
+def test_malformed_folder(folder: Path, spoil, said: str) -> None:  # type: ignore[no-untyped-def]
+    done = call("report", spoil(folder))
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1 and said in done.stderr
+    assert not list(folder.glob("*.html*"))
+
+
+def test_page_that_cannot_be_written(folder: Path) -> None:
+    done = call("report", folder, "--html", folder / "absent" / "page.html")
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "cannot be written" in done.stderr
+
+
+def test_recomputed_metrics_of_a_known_track(folder: Path) -> None:
+    # Two targets of two estimates, 3 m and 4 m off along the axes; the covariance says 1 m and 2 m.
+    track = {name: np.zeros(4) for name in (*output.TRACK_COLUMNS, *output.OPTIONAL_COLUMNS)}
+    track["target"] = np.array([0.0, 1.0, 0.0, 1.0])
+    track["x_m"] = np.array([3.0, 3.0, 0.0, 0.0])
+    track["y_m"] = np.array([0.0, 0.0, 4.0, 4.0])
+    track["cov_xx_m2"] += 1.0
+    track["cov_yy_m2"] += 4.0
+    assert metrics.order_in_track(track).tolist() == [0, 0, 1, 1]
+    assert metrics.errors(track).tolist() == [3, 3, 4, 4]
+    assert metrics.normalised(track).tolist() == [9, 9, 4, 4]
+    assert metrics.rms(metrics.errors(track)) == pytest.approx(np.sqrt(12.5))
+
+
+def test_complete_folders_are_recognised(folder: Path) -> None:
+    assert sweep.is_complete(folder, runs=3, seed=0)
+    assert not sweep.is_complete(folder, runs=4, seed=0)
+    assert not sweep.is_complete(folder / "absent", runs=3, seed=0)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.0474, "0.0474"), (3.5312, "3.53"), (18.24, "18.2"), (1234.0, "1,234"), (float("nan"), "–"), (0, "0")]
+)
+def test_numbers_as_they_are_written(value: float, text: str) -> None:
+    assert number(value) == text
