@@ -10,7 +10,9 @@ from .failure import Failure
 
 
 def parser() -> argparse.ArgumentParser:
-    top = argparse.ArgumentParser(prog="motehound_tools", description="Reports, sweeps and reference figures for motehound.")
+    top = argparse.ArgumentParser(
+        prog="motehound_tools", description="Reports, sweeps and reference figures for motehound."
+    )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     report = commands.add_parser("report", help="one HTML page from an output folder of the command or of a sweep")
@@ -24,12 +26,18 @@ def parser() -> argparse.ArgumentParser:
     sweep.add_argument("--runs", type=int, default=50)
     sweep.add_argument("--seed", type=int, default=0)
     sweep.add_argument("--out", type=Path, required=True)
-    sweep.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="for every value; may be repeated")
+    sweep.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="for every value; may be repeated"
+    )
 
     results = commands.add_parser("results", help="run the published experiments and write the table of results")
     results.add_argument("--quick", action="store_true", help="5 seeds instead of 50")
-    results.add_argument("--out", type=Path, default=Path("out/results"), help="where the runs go; finished ones are kept")
-    results.add_argument("--markdown", type=Path, help="the page to write (docs/results.md; with --quick out/results-quick.md)")
+    results.add_argument(
+        "--out", type=Path, default=Path("out/results"), help="where the runs go; finished ones are kept"
+    )
+    results.add_argument(
+        "--markdown", type=Path, help="the page to write (docs/results.md; with --quick out/results-quick.md)"
+    )
 
     picture = commands.add_parser("picture", help="draw the README's picture of a tracked source")
     picture.add_argument("--out", type=Path, default=Path("out/picture"), help="where the runs go")
@@ -70,7 +78,14 @@ def perform(arguments: argparse.Namespace) -> None:
             raise Failure("--values needs at least one value and --runs at least 1")
         program = command.find(arguments.motehound)
         sweep.run(
-            program, arguments.scenario, arguments.key, values, arguments.runs, arguments.seed, arguments.out, settings(arguments.set)
+            program,
+            arguments.scenario,
+            arguments.key,
+            values,
+            arguments.runs,
+            arguments.seed,
+            arguments.out,
+            settings(arguments.set),
         )
     elif arguments.command == "results":
         from . import command, results

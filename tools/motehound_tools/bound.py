@@ -17,9 +17,9 @@ from scipy.linalg import cho_factor, cho_solve
 from .field import ages
 from .scenario import Array, Scenario
 
-START_SD_M = 3.0      # of the first position and, per interval, of the first step
-RELEASE_SD_LN = 1.0   # of ln mu
-FLOOR = 1e-3          # g/m2: standard deviation that every reading has at least
+START_SD_M = 3.0  # of the first position and, per interval, of the first step
+RELEASE_SD_LN = 1.0  # of ln mu
+FLOOR = 1e-3  # g/m2: standard deviation that every reading has at least
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def motion_information(count: int, interval: float, acceleration: float | None) 
 def bounds(scenario: Scenario, nodes: Array, accelerations: tuple[float | None, ...]) -> list[Bound]:
     """One bound for each standard deviation of the acceleration, m/s2 (None: no prior of the motion)."""
     interval = scenario.number("sensor.interval_s")
-    knots = np.arange(int(np.floor(scenario.route.end / interval + 1e-9)) + 1) * interval
+    knots: Array = np.arange(np.floor(scenario.route.end / interval + 1e-9) + 1.0, dtype=np.float64) * interval
     kept = 1.0 - scenario.number("sensor.loss")
     silent_from = scenario.number("sensor.outage_start_s")
     silent_to = silent_from + scenario.number("sensor.outage_s")

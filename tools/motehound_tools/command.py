@@ -20,7 +20,9 @@ def find(named: str | None) -> Path:
             if path is None:
                 raise Failure(f"{wanted}: no such program")
             return Path(path)
-    built = [path for path in ROOT.glob("build/host*/host_sim/**/motehound") if path.is_file() and os.access(path, os.X_OK)]
+    built = [
+        path for path in ROOT.glob("build/host*/host_sim/**/motehound") if path.is_file() and os.access(path, os.X_OK)
+    ]
     if built:
         return max(built, key=lambda path: path.stat().st_mtime)
     installed = shutil.which("motehound")
@@ -29,7 +31,9 @@ def find(named: str | None) -> Path:
     raise Failure("motehound: not found in build/host or on the PATH; build it or name it with --motehound")
 
 
-def run(program: Path, scenario: str, out: Path, runs: int, seed: int, settings: dict[str, str], jobs: int | None = None) -> None:
+def run(
+    program: Path, scenario: str, out: Path, runs: int, seed: int, settings: dict[str, str], jobs: int | None = None
+) -> None:
     """One `motehound run` into `out`."""
     call = [str(program), "run", scenario, "--runs", str(runs), "--seed", str(seed), "--out", str(out)]
     if jobs:

@@ -31,8 +31,8 @@ def ages(scenario: Scenario, time: float, breaks: Array) -> tuple[Array, Array]:
             edges.append(end if age + 1.2 * step > end else age + step)
     edge = np.array(edges)
     half = np.diff(edge)[:, None] / 2.0
-    age = (edge[:-1, None] + half) + half * _POINTS
-    return age.ravel(), (half * _WEIGHTS).ravel()
+    points = (edge[:-1, None] + half) + half * _POINTS
+    return points.ravel(), (half * _WEIGHTS).ravel()
 
 
 def concentration(scenario: Scenario, places: Array, time: float) -> Array:

@@ -147,7 +147,16 @@ def field_picture(output: Output) -> Picture | None:
     axes.plot(past[:, 0], past[:, 1], color=TRUTH, linewidth=1.4, label="path of the source", zorder=3)
     axes.plot(*past[-1], "o", color=TRUTH, markersize=6, markeredgecolor="white", label="source", zorder=4)
     now = track["time_s"] == time
-    axes.plot(track["x_m"][now], track["y_m"][now], "x", color=TRACK, markersize=9, markeredgewidth=2, label="estimate", zorder=5)
+    axes.plot(
+        track["x_m"][now],
+        track["y_m"][now],
+        "x",
+        color=TRACK,
+        markersize=9,
+        markeredgewidth=2,
+        label="estimate",
+        zorder=5,
+    )
     metres(axes, scenario)
     bar = figure.colorbar(image, ax=axes, shrink=0.86, pad=0.02, extend="max")
     bar.set_label("concentration, g/m²")
@@ -172,13 +181,27 @@ def track_picture(output: Output, run: int) -> Picture | None:
     apart = raw & (np.hypot(track["raw_x_m"] - track["x_m"], track["raw_y_m"] - track["y_m"]) > 1e-6)
     if apart.any():
         axes.plot(
-            track["raw_x_m"][raw], track["raw_y_m"][raw], ".", color=RAW, markersize=4, alpha=0.75, label="before the filter"
+            track["raw_x_m"][raw],
+            track["raw_y_m"][raw],
+            ".",
+            color=RAW,
+            markersize=4,
+            alpha=0.75,
+            label="before the filter",
         )
     if np.isfinite(track["true_x_m"]).any():
         axes.plot(track["true_x_m"], track["true_y_m"], color=TRUTH, linewidth=2.6, alpha=0.85, label="truth")
     ellipses = draw_ellipses(axes, track, max(1, len(track["time_s"]) // 40), TRACK)
     axes.plot(
-        track["x_m"], track["y_m"], "-", color=TRACK, linewidth=1.2, marker=".", markersize=3.5, label="estimate", zorder=4
+        track["x_m"],
+        track["y_m"],
+        "-",
+        color=TRACK,
+        linewidth=1.2,
+        marker=".",
+        markersize=3.5,
+        label="estimate",
+        zorder=4,
     )
     metres(axes, output.scenario)
     if not output.scenario:
@@ -187,7 +210,9 @@ def track_picture(output: Output, run: int) -> Picture | None:
         axes.margins(0.08)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, handletextpad=0.5, columnspacing=1.4)
     said = " Ellipses: two stated standard deviations." if ellipses else ""
-    return Picture("Track", svg_text(figure), f"Run {run}, the one of median error: {len(track['time_s'])} estimates.{said}")
+    return Picture(
+        "Track", svg_text(figure), f"Run {run}, the one of median error: {len(track['time_s'])} estimates.{said}"
+    )
 
 
 def plain_log(axes: Axes, which: str) -> None:
@@ -215,9 +240,31 @@ def error_picture(output: Output) -> Picture | None:
     figure, axes = pyplot.subplots(figsize=(6.4, 3.5))
     floor = max(float(np.min(quantiles[2])) * 0.2, 1e-4)
     if runs > 1:
-        axes.fill_between(times, np.maximum(quantiles[0], floor), quantiles[4], color=TRACK, alpha=0.13, linewidth=0, label="5 to 95 % of runs")
-        axes.fill_between(times, np.maximum(quantiles[1], floor), quantiles[3], color=TRACK, alpha=0.25, linewidth=0, label="25 to 75 %")
-    axes.plot(times, np.maximum(quantiles[2], floor), color=TRACK, linewidth=1.6, label="estimate, median" if runs > 1 else "estimate")
+        axes.fill_between(
+            times,
+            np.maximum(quantiles[0], floor),
+            quantiles[4],
+            color=TRACK,
+            alpha=0.13,
+            linewidth=0,
+            label="5 to 95 % of runs",
+        )
+        axes.fill_between(
+            times,
+            np.maximum(quantiles[1], floor),
+            quantiles[3],
+            color=TRACK,
+            alpha=0.25,
+            linewidth=0,
+            label="25 to 75 %",
+        )
+    axes.plot(
+        times,
+        np.maximum(quantiles[2], floor),
+        color=TRACK,
+        linewidth=1.6,
+        label="estimate, median" if runs > 1 else "estimate",
+    )
     raw_times, raw = over_time(output.track, errors(output.track, "raw_"))
     if len(raw_times) and not (len(raw_times) == len(times) and np.allclose(raw, quantiles)):
         axes.plot(raw_times, np.maximum(raw[2], floor), color=RAW, linewidth=1.0, label="before the filter, median")
@@ -225,7 +272,9 @@ def error_picture(output: Output) -> Picture | None:
     if len(stated_times):
         # The median of a plane error whose coordinates have this standard deviation.
         expected = stated[2] * np.sqrt(2.0 * np.log(2.0))
-        axes.plot(stated_times, expected, color=SECOND, linewidth=1.1, linestyle=(0, (4, 2)), label="as stated by the tracker")
+        axes.plot(
+            stated_times, expected, color=SECOND, linewidth=1.1, linestyle=(0, (4, 2)), label="as stated by the tracker"
+        )
     plain_log(axes, "y")
     axes.set_xlabel("time, s")
     axes.set_ylabel("error, m")
@@ -252,7 +301,11 @@ def distribution_picture(output: Output) -> Picture | None:
     left.set_ylabel("share of estimates below, %")
     left.set_ylim(0, 100)
     left.set_title("Error")
-    caption = f"Left: share of the {len(error):,} estimates whose error is below a value." if len(nees) else f"Share of the {len(error):,} estimates whose error is below a value."
+    caption = (
+        f"Left: share of the {len(error):,} estimates whose error is below a value."
+        if len(nees)
+        else f"Share of the {len(error):,} estimates whose error is below a value."
+    )
     if len(nees):
         right = panels[0, 1]
         stated = 1.0 - np.exp(-nees / 2.0)  # chi-squared with two degrees of freedom
@@ -290,7 +343,17 @@ def sweep_picture(sweep: Sweep) -> Picture | None:
     if not np.isfinite(middle).any():
         pyplot.close(figure)
         return None
-    axes.errorbar(values, middle, spread, color=TRACK, marker="o", markersize=4.5, capsize=3, linewidth=1.6, label="estimate, RMSE (mean and sd of runs)")
+    axes.errorbar(
+        values,
+        middle,
+        spread,
+        color=TRACK,
+        marker="o",
+        markersize=4.5,
+        capsize=3,
+        linewidth=1.6,
+        label="estimate, RMSE (mean and sd of runs)",
+    )
     for metric, colour, text in (
         ("position_median_m", SECOND, "estimate, median"),
         ("raw_position_rmse_m", RAW, "before the filter, RMSE"),
@@ -308,4 +371,8 @@ def sweep_picture(sweep: Sweep) -> Picture | None:
     axes.set_xlabel(name)
     axes.set_ylabel("error, m")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2, columnspacing=1.4)
-    return Picture(f"Error against {name.split(',')[0]}", svg_text(figure), f"Error of {len(sweep.outputs[0].runs['run'])} runs at each value of {sweep.key}.")
+    return Picture(
+        f"Error against {name.split(',')[0]}",
+        svg_text(figure),
+        f"Error of {len(sweep.outputs[0].runs['run'])} runs at each value of {sweep.key}.",
+    )

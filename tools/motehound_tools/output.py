@@ -75,7 +75,9 @@ class Output:
         try:
             summary = json.loads(file.read_text(encoding="utf-8"))
         except OSError as error:
-            raise Failure(f"{file}: {error.strerror}; expected an output folder of `motehound run` or `sweep`") from None
+            raise Failure(
+                f"{file}: {error.strerror}; expected an output folder of `motehound run` or `sweep`"
+            ) from None
         except ValueError as error:
             raise Failure(f"{file}: not JSON: {error}") from None
         if not isinstance(summary, dict) or not isinstance(summary.get("metrics"), dict):

@@ -37,16 +37,29 @@ def write(program: Path, out: Path, image: Path) -> None:
     figure, axes = pyplot.subplots(figsize=(6.6, 6.2))
     axes.grid(False)
     figures.draw_cloud(axes, scenario, float(time), cells=160)
-    axes.scatter(nodes[:, 0], nodes[:, 1], s=2.0, color=figures.QUIET, alpha=0.7, linewidths=0, rasterized=True, zorder=2)
+    axes.scatter(
+        nodes[:, 0], nodes[:, 1], s=2.0, color=figures.QUIET, alpha=0.7, linewidths=0, rasterized=True, zorder=2
+    )
     axes.plot(path[:, 0], path[:, 1], color=figures.TRUTH, linewidth=4.0, alpha=0.9, label="true path", zorder=3)
-    for found, colour, name in ((paper, figures.RAW, "luo, the published method"), (ours, figures.TRACK, "diffusion, the default")):
-        label = f"{name}: RMSE {rms(errors(found.track)[found.skip_first:]):.2f} m"
+    for found, colour, name in (
+        (paper, figures.RAW, "luo, the published method"),
+        (ours, figures.TRACK, "diffusion, the default"),
+    ):
+        label = f"{name}: RMSE {rms(errors(found.track)[found.skip_first :]):.2f} m"
         axes.plot(
-            found.track["x_m"], found.track["y_m"], "-", color=colour, linewidth=1.2, marker=".", markersize=4, label=label, zorder=4
+            found.track["x_m"],
+            found.track["y_m"],
+            "-",
+            color=colour,
+            linewidth=1.2,
+            marker=".",
+            markersize=4,
+            label=label,
+            zorder=4,
         )
     head = scenario.route.position(np.array(time))
     axes.plot(*head, "o", color="white", markeredgecolor=figures.TRUTH, markeredgewidth=1.8, markersize=9, zorder=5)
-    axes.annotate("source", head, xytext=(8, 8), textcoords="offset points", weight="bold", zorder=6)
+    axes.annotate("source", (head[0], head[1]), xytext=(8, 8), textcoords="offset points", weight="bold", zorder=6)
     figures.metres(axes, scenario)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=1, fontsize=9.5)
     axes.set_title(f"{len(nodes):,} motes, cloud at t = {time:g} s", loc="left", color="#3b434d")

@@ -68,7 +68,9 @@ def statistics(results: Output) -> list[dict[str, str]]:
     for name, entry in results.summary["metrics"].items():
         row = {key: number(entry[key]) for key in output.STATISTICS}
         pooled = results.summary.get("pooled", {}).get(name)
-        rows.append({"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled["mean"]) if pooled else "", **row})
+        rows.append(
+            {"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled["mean"]) if pooled else "", **row}
+        )
     return rows
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from motehound_tools import metrics, output
 from motehound_tools.scenario import Scenario
 
@@ -92,7 +93,10 @@ def write_output(folder: Path, runs: int = 3, samples: int = 20, error_m: float 
         for name in each[0]
     }
     (folder / "runs.csv").write_text(
-        "run,seed," + ",".join(summary) + "\n" + "".join(f"{r},{r}," + ",".join(str(v) for v in each[r].values()) + "\n" for r in range(runs))
+        "run,seed,"
+        + ",".join(summary)
+        + "\n"
+        + "".join(f"{r},{r}," + ",".join(str(v) for v in each[r].values()) + "\n" for r in range(runs))
     )
     (folder / "summary.json").write_text(
         json.dumps({"scenario": "small", "seed": 0, "runs": runs, "version": "test", "metrics": summary})

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import scenario
-from motehound_tools import bound, field
-from motehound_tools.scenario import splitmix64
 from scipy.integrate import quad
 from scipy.special import exp1
+
+from motehound_tools import bound, field
+from motehound_tools.scenario import splitmix64
 
 
 def test_splitmix64_known_stream() -> None:

@@ -6,12 +6,14 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import write_output
+
 from motehound_tools import metrics, output, sweep
 from motehound_tools.report import number
 
@@ -159,7 +161,7 @@ def _scenario_without_field(folder: Path) -> Path:
         (_scenario_without_field, "scenario.json: the key `field.width_m` is missing"),
     ],
 )
-def test_malformed_folder(folder: Path, spoil, said: str) -> None:  # type: ignore[no-untyped-def]
+def test_malformed_folder(folder: Path, spoil: Callable[[Path], Path], said: str) -> None:
     done = call("report", spoil(folder))
     assert done.returncode == 1
     assert done.stderr.count("\n") == 1 and said in done.stderr
@@ -192,7 +194,8 @@ def test_complete_folders_are_recognised(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.0474, "0.0474"), (3.5312, "3.53"), (18.24, "18.2"), (1234.0, "1,234"), (float("nan"), "–"), (0, "0")]
+    ("value", "text"),
+    [(0.0474, "0.0474"), (3.5312, "3.53"), (18.24, "18.2"), (1234.0, "1,234"), (float("nan"), "–"), (0, "0")],
 )
 def test_numbers_as_they_are_written(value: float, text: str) -> None:
     assert number(value) == text

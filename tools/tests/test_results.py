@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from conftest import write_output
+
 from motehound_tools import command, metrics, output, results
 from motehound_tools.failure import Failure
 
@@ -28,7 +29,11 @@ def test_verdicts() -> None:
 def test_page_of_made_up_runs(tmp_path: Path) -> None:
     found = output.read(write_output(tmp_path / "one", error_m=0.3))
     assert isinstance(found, output.Output)
-    limit = {"none": {"rms_m": 0.7, "median_m": 0.1}, "0.5": {"rms_m": 0.1765, "median_m": 0.1}, "0.05": {"rms_m": 0.05, "median_m": 0.05}}
+    limit = {
+        "none": {"rms_m": 0.7, "median_m": 0.1},
+        "0.5": {"rms_m": 0.1765, "median_m": 0.1},
+        "0.05": {"rms_m": 0.05, "median_m": 0.05},
+    }
     limits = {results.Case("E1", "diffusion", results.LOW).folder: limit}
     page = results.page(lambda case: found, limits, 3, 1)
     tables = [line for line in page.splitlines() if line.startswith("|")]
