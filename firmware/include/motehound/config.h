@@ -16,6 +16,31 @@
 #define MH_SENSOR_HISTORY 4
 #endif
 
+/* The tracker `diffusion`. Window: sampling instants whose positions are estimated together. Near and strong: measurements used of an instant,
+ * those nearest to the source and those with the most significant increments, 24 bytes each and instant of the window. Trail: older positions
+ * that are kept, 16 bytes each. In all about 4.2 kB of state, 1.9 kB with the small AVR's values; time grows with rows and the cube of the window. */
+#ifndef MH_DIFFUSION_WINDOW
+#define MH_DIFFUSION_WINDOW 3
+#endif
+#ifdef __AVR__
+#define MH_DIFFUSION_SMALL 1
+#else
+#define MH_DIFFUSION_SMALL 0
+#endif
+#ifndef MH_DIFFUSION_NEAR
+#define MH_DIFFUSION_NEAR (MH_DIFFUSION_SMALL ? 5 : 8)
+#endif
+#ifndef MH_DIFFUSION_STRONG
+#define MH_DIFFUSION_STRONG (MH_DIFFUSION_SMALL ? 5 : 8)
+#endif
+#ifndef MH_DIFFUSION_TRAIL
+#define MH_DIFFUSION_TRAIL (MH_DIFFUSION_SMALL ? 14 : 60)
+#endif
+/* Sampling instants without a significant increment after which its track ends. */
+#ifndef MH_DIFFUSION_SILENCE
+#define MH_DIFFUSION_SILENCE 10
+#endif
+
 /* Largest frame, in bytes, check sum included: the largest PSDU of IEEE 802.15.4. */
 #define MH_FRAME_MAX 127
 
@@ -34,6 +59,18 @@
 #endif
 #if MH_SENSOR_HISTORY < 2 || MH_SENSOR_HISTORY > 16
 #error "MH_SENSOR_HISTORY must be 2 to 16: a difference needs two samples"
+#endif
+#if MH_DIFFUSION_WINDOW < 2 || MH_DIFFUSION_WINDOW > 8
+#error "MH_DIFFUSION_WINDOW must be 2 to 8: a turn shows in the sample after it, and the cost grows with the cube"
+#endif
+#if MH_DIFFUSION_NEAR < 3 || MH_DIFFUSION_NEAR > 32 || MH_DIFFUSION_STRONG < 3 || MH_DIFFUSION_STRONG > 32
+#error "MH_DIFFUSION_NEAR and MH_DIFFUSION_STRONG must be 3 to 32"
+#endif
+#if MH_DIFFUSION_TRAIL < 4 || MH_DIFFUSION_TRAIL > 250
+#error "MH_DIFFUSION_TRAIL must be 4 to 250: its knots thin out with age, so more buy nothing"
+#endif
+#if MH_DIFFUSION_SILENCE < 1 || MH_DIFFUSION_SILENCE > 1000
+#error "MH_DIFFUSION_SILENCE must be 1 to 1000"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"

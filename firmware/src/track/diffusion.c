@@ -1,0 +1,470 @@
+#include "motehound/diffusion.h"
+
+#define CLUSTER_CANDIDATES 12
+#define CLUSTER_LEAST 3    /* increments that make a cluster */
+#define DETECTIONS_LEAST 4 /* concentrations above chi that make a start */
+#define SIGNIFICANCE_MAX 8.0f
+#define RANKING_MAX (MH_DIFFUSION_STRONG > CLUSTER_CANDIDATES ? MH_DIFFUSION_STRONG : CLUSTER_CANDIDATES)
+
+/* The best few of many, best first. */
+struct ranking {
+    int count, capacity;
+    size_t index[RANKING_MAX > MH_DIFFUSION_NEAR ? RANKING_MAX : MH_DIFFUSION_NEAR];
+    mh_real score[RANKING_MAX > MH_DIFFUSION_NEAR ? RANKING_MAX : MH_DIFFUSION_NEAR];
+};
+
+/* Where the significant increments of an instant crowd. */
+struct cluster {
+    bool found;
+    struct mh_vec2 centre;
+};
+
+/* The measurements of one instant. */
+struct instant {
+    mh_tick time;
+    const struct mh_measurement *measurements;
+    size_t count;
+};
+
+static mh_real square(mh_real a) { return a * a; }
+
+static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return square(a.x - b.x) + square(a.y - b.y); }
+
+static void rank(struct ranking *ranking, size_t index, mh_real score)
+{
+    int at = ranking->count;
+    if (at == ranking->capacity) {
+        at--;
+        if (!(score > ranking->score[at])) {
+            return;
+        }
+    } else {
+        ranking->count++;
+    }
+    for (; at > 0 && score > ranking->score[at - 1]; at--) {
+        ranking->index[at] = ranking->index[at - 1];
+        ranking->score[at] = ranking->score[at - 1];
+    }
+    ranking->index[at] = index;
+    ranking->score[at] = score;
+}
+
+void mh_diffusion_config_default(struct mh_diffusion_config *config)
+{
+    const struct mh_diffusion_config nominal = {
+        .diffusion_m2ps = 1.0f,
+        .chi = 0.2f,
+        .release_gps = 100.0f,
+        .additive_sd = 0.05f,
+        .relative_sd = 0.05f,
+        .turn_mps2 = 0.35f,
+        .speed_mps = 3.0f,
+        .reach_m = 8.0f,
+        .region = {-1000000000, 1000000000, -1000000000, 1000000000},
+    };
+    *config = nominal;
+}
+
+static bool within(mh_real value, mh_real low, mh_real high) { return value >= low && value <= high; }
+
+static enum mh_status init(void *state, const void *config, mh_tick interval)
+{
+    struct mh_diffusion *track = state;
+    const struct mh_diffusion_config *c = config;
+    if (track == NULL || c == NULL || interval < 1 || interval > 3600000u) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!within(c->diffusion_m2ps, 1e-4f, 1e3f) || !within(c->chi, 1e-3f, 1e3f) ||
+        !within(c->release_gps, 1e-3f, 1e5f) || !within(c->additive_sd, 1e-3f, 1e3f) ||
+        !within(c->relative_sd, 0.0f, 1.0f) || !within(c->turn_mps2, 1e-3f, 1e2f) ||
+        !within(c->speed_mps, 1e-2f, 1e3f) || !within(c->reach_m, 0.1f, 1e3f) ||
+        c->region.x_min_mm >= c->region.x_max_mm || c->region.y_min_mm >= c->region.y_max_mm) {
+        return MH_ERR_ARGUMENT;
+    }
+    track->config = *c;
+    track->stepped = false;
+    track->tracking = false;
+    track->silent = 0;
+    track->level = 1.0f;
+    track->density = 0.0f;
+    track->asked_radius = c->reach_m;
+
+    struct mh_trail_fit *fit = &track->fit;
+    fit->model.diffusion_m2ps = c->diffusion_m2ps;
+    fit->model.turn_mps2 = c->turn_mps2;
+    fit->model.speed_mps = c->speed_mps;
+    fit->model.interval = interval;
+    fit->log_rate = mh_log(c->release_gps);
+    fit->bounds.log_rate_low = fit->log_rate - 3.0f;
+    fit->bounds.log_rate_high = fit->log_rate + 3.0f;
+    return MH_OK;
+}
+
+static bool has_increment(const struct mh_measurement *m) { return (m->flags & MH_MEASUREMENT_HAS_INCREMENT) != 0; }
+
+/* Variance of an increment from the noise of the two readings. */
+static mh_real noise_variance(const struct mh_diffusion_config *config, const struct mh_measurement *m)
+{
+    const mh_real now = mh_q20_to_real(m->value);
+    const mh_real before = now - mh_q20_to_real(m->increment);
+    return 2.0f * square(config->additive_sd) + square(config->relative_sd) * (square(now) + square(before));
+}
+
+static mh_real significance(const struct mh_diffusion_config *config, const struct mh_measurement *m)
+{
+    return mh_q20_to_real(m->increment) / mh_sqrt(noise_variance(config, m) + square(0.25f * config->chi));
+}
+
+static bool is_strong(const struct mh_diffusion_config *config, const struct mh_measurement *m)
+{
+    return has_increment(m) && mh_q20_to_real(m->increment) >= config->chi;
+}
+
+/* The most significant increments of at least chi. */
+static void rank_strong(const struct mh_diffusion_config *config, const struct instant *now, int capacity,
+                        struct ranking *ranking)
+{
+    ranking->count = 0;
+    ranking->capacity = capacity;
+    for (size_t i = 0; i < now->count; i++) {
+        if (is_strong(config, &now->measurements[i])) {
+            rank(ranking, i, significance(config, &now->measurements[i]));
+        }
+    }
+}
+
+/* Among the most significant increments the one in the most significant neighbourhood; the centre is that neighbourhood's mean. */
+static struct cluster find_cluster(const struct mh_diffusion *track, const struct instant *now)
+{
+    struct ranking strong;
+    struct cluster cluster = {false, {0.0f, 0.0f}};
+    const mh_real radius2 = square(0.625f * track->config.reach_m);
+    mh_real best = 0.0f;
+    rank_strong(&track->config, now, CLUSTER_CANDIDATES, &strong);
+    for (int i = 0; i < strong.count; i++) {
+        const struct mh_vec2 place = mh_place_relative(&now->measurements[strong.index[i]].place, &track->origin);
+        struct mh_vec2 moment = {0.0f, 0.0f};
+        mh_real weight = 0.0f, sum = 0.0f;
+        int neighbours = 0;
+        for (int j = 0; j < strong.count; j++) {
+            const struct mh_measurement *m = &now->measurements[strong.index[j]];
+            const struct mh_vec2 other = mh_place_relative(&m->place, &track->origin);
+            if (distance2(place, other) <= radius2) {
+                const mh_real increment = mh_q20_to_real(m->increment);
+                moment.x += increment * other.x;
+                moment.y += increment * other.y;
+                weight += increment;
+                sum += mh_min(strong.score[j], SIGNIFICANCE_MAX);
+                neighbours++;
+            }
+        }
+        if (neighbours >= CLUSTER_LEAST && sum > best) {
+            best = sum;
+            cluster.found = true;
+            cluster.centre.x = moment.x / weight;
+            cluster.centre.y = moment.y / weight;
+        }
+    }
+    return cluster;
+}
+
+static void add_row(struct mh_diffusion *track, const struct mh_measurement *m)
+{
+    const mh_real before = mh_q20_to_real(m->value) - mh_q20_to_real(m->increment);
+    mh_real unknown_past =
+        0.2f * before; /* release from before the start is not in the model; what it does to increments fades */
+    for (int i = 0; i < track->since && i < 16; i++) {
+        unknown_past *= 0.5f;
+    }
+    const mh_real variance = noise_variance(&track->config, m) + square(unknown_past);
+    if (mh_trail_fit_add_row(&track->fit, mh_place_relative(&m->place, &track->origin), mh_q20_to_real(m->increment),
+                             variance) == MH_OK) {
+        track->used++;
+    }
+}
+
+/* Rows of the newest knot: the nodes nearest to `centre`, silent or not, and the most significant increments anywhere. */
+static void add_rows(struct mh_diffusion *track, const struct instant *now, struct mh_vec2 centre, mh_real radius)
+{
+    struct ranking near = {.capacity = MH_DIFFUSION_NEAR}, strong;
+    track->used = 0;
+    for (size_t i = 0; i < now->count; i++) {
+        const struct mh_measurement *m = &now->measurements[i];
+        const mh_real d2 = distance2(mh_place_relative(&m->place, &track->origin), centre);
+        if (has_increment(m) && d2 <= square(radius)) {
+            rank(&near, i, -d2);
+        }
+    }
+    for (int i = 0; i < near.count; i++) {
+        add_row(track, &now->measurements[near.index[i]]);
+    }
+    rank_strong(&track->config, now, MH_DIFFUSION_STRONG, &strong);
+    for (int i = 0; i < strong.count; i++) {
+        bool taken = false;
+        for (int j = 0; j < near.count; j++) {
+            taken = taken || near.index[j] == strong.index[i];
+        }
+        if (!taken) {
+            add_row(track, &now->measurements[strong.index[i]]);
+        }
+    }
+}
+
+static void bound_region(struct mh_diffusion *track)
+{
+    const struct mh_region *region = &track->config.region;
+    const struct mh_place low = {region->x_min_mm, region->y_min_mm, 0}, high = {region->x_max_mm, region->y_max_mm, 0};
+    track->fit.bounds.low = mh_place_relative(&low, &track->origin);
+    track->fit.bounds.high = mh_place_relative(&high, &track->origin);
+}
+
+/* Begin, or begin again, at the cluster's centre. */
+static enum mh_status start(struct mh_diffusion *track, const struct instant *now, struct mh_vec2 centre)
+{
+    mh_trail_fit_start(&track->fit, centre, 0.375f * track->config.reach_m, now->time - track->fit.model.interval,
+                       now->time);
+    track->tracking = true;
+    track->since = 0;
+    track->doubtful = 0;
+    track->astray = 0;
+    add_rows(track, now, centre, track->config.reach_m);
+    return mh_trail_fit_solve(&track->fit);
+}
+
+/* The same after a track: its release rate is a better guess than none. */
+static enum mh_status restart(struct mh_diffusion *track, const struct instant *now, struct mh_vec2 centre)
+{
+    const mh_real expected = mh_log(track->config.release_gps);
+    track->fit.log_rate = mh_clamp(track->fit.log_rate, expected - 1.60943791f, expected + 1.60943791f); /* ln 5 */
+    track->fit.log_rate_sd = 0.5f;
+    return start(track, now, centre);
+}
+
+static mh_real misfit(const struct mh_trail_fit *fit)
+{
+    return fit->row_count > 0 ? fit->cost / (mh_real)fit->row_count : 0.0f;
+}
+
+static struct mh_fit_knot *newest(struct mh_trail_fit *fit) { return &fit->knots[fit->knot_count - 1]; }
+
+/* Solve again with the newest knot at the cluster's centre; keep the better of the two. */
+static enum mh_status second_start(struct mh_trail_fit *fit, struct mh_vec2 centre)
+{
+    struct mh_fit_knot knots[MH_FIT_KNOTS];
+    const mh_real cost = fit->cost, log_rate = fit->log_rate;
+    for (int k = 0; k < fit->knot_count; k++) {
+        knots[k] = fit->knots[k];
+    }
+    newest(fit)->place = centre;
+    if (mh_trail_fit_solve(fit) == MH_OK && fit->cost < cost) {
+        return MH_OK;
+    }
+    for (int k = 0; k < fit->knot_count; k++) {
+        fit->knots[k] = knots[k];
+    }
+    fit->log_rate = log_rate;
+    return mh_trail_fit_assess(fit);
+}
+
+/* Count the signs that the fit follows something else than the source; true if that is enough. */
+static bool is_lost(struct mh_diffusion *track, const struct cluster *cluster)
+{
+    const mh_real bad = misfit(&track->fit);
+    const bool astray =
+        cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > square(track->config.reach_m);
+    track->doubtful = bad > 6.0f ? track->doubtful + 1 : 0;
+    track->astray = astray ? track->astray + 1 : 0;
+    return cluster->found && (track->doubtful >= 3 || bad > 24.0f || track->astray >= 4);
+}
+
+/* One instant of a track. `restarted` tells whether it began again. */
+static enum mh_status follow(struct mh_diffusion *track, const struct instant *now, bool *restarted)
+{
+    struct mh_trail_fit *fit = &track->fit;
+    const struct cluster cluster = find_cluster(track, now);
+    mh_trail_fit_advance(fit, now->time);
+    track->since++;
+    add_rows(track, now, track->asked, track->asked_radius);
+    enum mh_status status = mh_trail_fit_solve(fit);
+    if (status == MH_OK && cluster.found &&
+        (misfit(fit) > 1.0f || distance2(newest(fit)->place, cluster.centre) > square(0.25f * track->config.reach_m))) {
+        status = second_start(fit, cluster.centre);
+    }
+    *restarted = status == MH_OK && is_lost(track, &cluster);
+    return *restarted ? restart(track, now, cluster.centre) : status;
+}
+
+/* Position, velocity and covariance `ahead` seconds after the newest knot, along the last segment; `steps` is that in intervals. The covariance is
+ * the fit's plus that of the turns since, a change of velocity with each interval. */
+static void extrapolate(const struct mh_diffusion *track, mh_real ahead, struct mh_estimate *estimate)
+{
+    const struct mh_trail_fit *fit = &track->fit;
+    const int m = fit->knot_count - 1;
+    const struct mh_fit_knot *last = &fit->knots[m], *older = last - 1;
+    const mh_real duration = (mh_real)mh_ticks_between(older->time, last->time) * (1.0f / (mh_real)MH_TICKS_PER_S);
+    const mh_real interval = (mh_real)fit->model.interval * (1.0f / (mh_real)MH_TICKS_PER_S);
+    estimate->velocity.x = (last->place.x - older->place.x) / duration;
+    estimate->velocity.y = (last->place.y - older->place.y) / duration;
+    estimate->position.x =
+        mh_clamp(last->place.x + ahead * estimate->velocity.x, fit->bounds.low.x, fit->bounds.high.x);
+    estimate->position.y =
+        mh_clamp(last->place.y + ahead * estimate->velocity.y, fit->bounds.low.y, fit->bounds.high.y);
+    estimate->raw = estimate->position;
+
+    const mh_real f = ahead / duration, g = 1.0f + f, steps = ahead / interval;
+    const mh_real turns = square(fit->model.turn_mps2 * interval * interval) * steps * (steps + 1.0f) *
+                          (2.0f * steps + 1.0f) * (1.0f / 6.0f);
+    mh_real pp[4], pq[4], qq[4];
+    mh_trail_fit_block(fit, m, m, pp);
+    mh_trail_fit_block(fit, m, m - 1, pq);
+    mh_trail_fit_block(fit, m - 1, m - 1, qq);
+    estimate->covariance.xx = track->level * (g * g * pp[0] - 2.0f * g * f * pq[0] + f * f * qq[0]) + turns;
+    estimate->covariance.xy = track->level * (g * g * pp[1] - g * f * (pq[1] + pq[2]) + f * f * qq[1]);
+    estimate->covariance.yy = track->level * (g * g * pp[3] - 2.0f * g * f * pq[3] + f * f * qq[3]) + turns;
+}
+
+/* Follow the density of the nodes that answered, and choose whom to ask next. */
+static void ask(struct mh_diffusion *track, const struct instant *now)
+{
+    const mh_real reach = track->config.reach_m;
+    size_t answers = 0;
+    for (size_t i = 0; i < now->count; i++) {
+        const struct mh_vec2 place = mh_place_relative(&now->measurements[i].place, &track->origin);
+        answers += distance2(place, track->asked) <= square(track->asked_radius) ? 1u : 0u;
+    }
+    if (now->count > 0) {
+        const mh_real density = (mh_real)answers / (MH_PI * square(track->asked_radius));
+        track->density = track->density > 0.0f ? track->density + 0.2f * (density - track->density) : density;
+    }
+    struct mh_estimate next;
+    const mh_real interval = (mh_real)track->fit.model.interval * (1.0f / (mh_real)MH_TICKS_PER_S);
+    extrapolate(track, interval, &next);
+    const mh_real wanted =
+        track->density > 0.0f ? mh_sqrt(1.25f * (mh_real)MH_DIFFUSION_NEAR / (MH_PI * track->density)) : reach;
+    track->asked_radius = mh_clamp(wanted, 0.125f * reach, reach);
+    const struct mh_fit_knot *last = newest(&track->fit);
+    track->asked.x = last->place.x + 0.75f * (next.position.x - last->place.x);
+    track->asked.y = last->place.y + 0.75f * (next.position.y - last->place.y);
+}
+
+/* A place to measure from before there is a track: the node with the largest increment. False if there is none. */
+static bool choose_origin(struct mh_diffusion *track, const struct instant *now)
+{
+    struct ranking strong;
+    rank_strong(&track->config, now, 1, &strong);
+    size_t detections = 0;
+    for (size_t i = 0; i < now->count; i++) {
+        detections += mh_q20_to_real(now->measurements[i].value) > track->config.chi ? 1u : 0u;
+    }
+    if (strong.count == 0 || detections < DETECTIONS_LEAST) {
+        return false;
+    }
+    track->origin = now->measurements[strong.index[0]].place;
+    bound_region(track);
+    return true;
+}
+
+/* The work of one instant, after which `tracking` tells whether there is a position. */
+static void work(struct mh_diffusion *track, const struct instant *now, bool *started)
+{
+    enum mh_status status = MH_OK;
+    *started = false;
+    if (track->tracking) {
+        status = follow(track, now, started);
+    } else if (choose_origin(track, now)) {
+        const struct cluster cluster = find_cluster(track, now);
+        if (cluster.found) {
+            track->fit.log_rate = mh_log(track->config.release_gps);
+            track->fit.log_rate_sd = 1.0f;
+            track->asked = cluster.centre;
+            track->asked_radius = track->config.reach_m;
+            status = start(track, now, cluster.centre);
+            *started = true;
+        }
+    }
+    struct ranking strong;
+    rank_strong(&track->config, now, 1, &strong);
+    track->silent = strong.count > 0 ? 0 : track->silent + 1;
+    track->tracking = track->tracking && status == MH_OK && track->silent <= MH_DIFFUSION_SILENCE;
+    if (track->tracking) {
+        if (track->fit.row_count > 0) {
+            track->level += 0.1f * (track->fit.data_cost / (mh_real)track->fit.row_count - track->level);
+        }
+        ask(track, now);
+    }
+}
+
+static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
+                           struct mh_estimate *estimate)
+{
+    struct mh_diffusion *track = state;
+    if (track == NULL || estimate == NULL || (measurements == NULL && count > 0)) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (track->stepped && !mh_tick_before(track->time, time)) {
+        return MH_ERR_TIME;
+    }
+    bool started;
+    /* instants that were left out, up to half an interval before this one */
+    const mh_tick interval = track->fit.model.interval;
+    while (track->tracking && time - track->time > interval + interval / 2) {
+        const struct instant missed = {track->time + interval, NULL, 0};
+        work(track, &missed, &started);
+        track->time = missed.time;
+    }
+    const struct instant now = {time, measurements, count};
+    work(track, &now, &started);
+    track->time = time;
+    track->stepped = true;
+    if (!track->tracking) {
+        return MH_NONE;
+    }
+    struct mh_estimate result = {.origin = track->origin, .time = time, .measurements = track->used};
+    result.flags = (uint8_t)((started ? MH_ESTIMATE_STARTED : 0) | (track->used == 0 ? MH_ESTIMATE_COASTED : 0));
+    extrapolate(track, 0.0f, &result);
+    *estimate = result;
+    return MH_OK;
+}
+
+static enum mh_status predict(const void *state, mh_tick time, struct mh_estimate *estimate)
+{
+    const struct mh_diffusion *track = state;
+    if (track == NULL || estimate == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!track->tracking) {
+        return MH_NONE;
+    }
+    const int32_t ahead = mh_ticks_between(track->time, time);
+    if (ahead < 0) {
+        return MH_ERR_TIME;
+    }
+    struct mh_estimate result = {.origin = track->origin, .time = time, .flags = MH_ESTIMATE_COASTED};
+    extrapolate(track, (mh_real)ahead * (1.0f / (mh_real)MH_TICKS_PER_S), &result);
+    *estimate = result;
+    return MH_OK;
+}
+
+static enum mh_status interest(const void *state, struct mh_interest *result)
+{
+    const struct mh_diffusion *track = state;
+    if (track == NULL || result == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!track->tracking) {
+        return MH_NONE;
+    }
+    result->centre = mh_place_from_offset(&track->origin, track->asked);
+    result->radius_mm = (uint32_t)(track->asked_radius * 1000.0f);
+    return MH_OK;
+}
+
+const struct mh_tracker mh_tracker_diffusion = {
+    .name = "diffusion",
+    .state_size = sizeof(struct mh_diffusion),
+    .config_size = sizeof(struct mh_diffusion_config),
+    .init = init,
+    .step = step,
+    .predict = predict,
+    .interest = interest,
+};
