@@ -18,7 +18,7 @@
 
 /* The tracker `diffusion`. Window: sampling instants whose positions are estimated together. Near and strong: measurements used of an instant,
  * those nearest to the source and those with the most significant increments, 24 bytes each and instant of the window. Trail: older positions
- * that are kept, 16 bytes each. In all about 4.2 kB of state, 1.9 kB with the small AVR's values; time grows with rows and the cube of the window. */
+ * that are kept, 16 bytes each. In all 2.8 kB of state, 1.6 kB with the small values of the AVR; time grows with rows and the cube of the window. */
 #ifndef MH_DIFFUSION_WINDOW
 #define MH_DIFFUSION_WINDOW 3
 #endif

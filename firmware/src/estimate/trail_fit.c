@@ -16,7 +16,7 @@ static mh_real seconds(mh_tick earlier, mh_tick later)
 
 static int unknowns(const struct mh_trail_fit *fit) { return 2 * fit->knot_count + 1; }
 
-static mh_real square(mh_real a) { return a * a; }
+static mh_real squared(mh_real a) { return a * a; }
 
 /* rho(r) = r^2 inside, 2 h r - h^2 outside, and the weight that makes r^2 * weight the same slope. */
 static mh_real huber(mh_real residual, mh_real bound, mh_real *weight)
@@ -130,7 +130,7 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real log_rate, mh_real *no
         const struct mh_fit_row *row = &fit->rows[i];
         mh_real j[MH_FIT_UNKNOWNS], weight;
         const mh_real excess = row_model(fit, row, rate, j) - row->increment;
-        const mh_real information = 1.0f / (row->variance + square(BASE_ERROR * row->base));
+        const mh_real information = 1.0f / (row->variance + squared(BASE_ERROR * row->base));
         data_cost += huber(excess * mh_sqrt(information), DATA_HUBER, &weight);
         accumulate(normal, gradient, 0, n, j, weight * information, excess);
     }
@@ -151,11 +151,11 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real log_rate, mh_real *no
         cost += add_motion_prior(fit, k, normal, gradient);
     }
 
-    const mh_real rate_information = 1.0f / square(fit->log_rate_sd);
+    const mh_real rate_information = 1.0f / squared(fit->log_rate_sd);
     const mh_real rate_excess = fit->log_rate - log_rate;
     normal[mh_packed_index(n - 1, n - 1)] += rate_information;
     gradient[n - 1] += rate_information * rate_excess;
-    return cost + rate_information * square(rate_excess);
+    return cost + rate_information * squared(rate_excess);
 }
 
 static void apply_step(struct mh_trail_fit *fit, const mh_real *step)
@@ -297,7 +297,7 @@ void mh_trail_fit_start(struct mh_trail_fit *fit, struct mh_vec2 place, mh_real 
     fit->knots[0] = first;
     fit->knots[1] = second;
     fit->prior_place = place;
-    fit->prior_information.xx = fit->prior_information.yy = 1.0f / square(sd_m);
+    fit->prior_information.xx = fit->prior_information.yy = 1.0f / squared(sd_m);
     fit->prior_information.xy = 0.0f;
 }
 
@@ -341,7 +341,7 @@ static void slide(struct mh_trail_fit *fit)
 void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time)
 {
     const int n = unknowns(fit);
-    fit->log_rate_sd = mh_sqrt(fit->covariance[mh_packed_index(n - 1, n - 1)] + square(LOG_RATE_DRIFT));
+    fit->log_rate_sd = mh_sqrt(fit->covariance[mh_packed_index(n - 1, n - 1)] + squared(LOG_RATE_DRIFT));
     if (fit->knot_count == MH_FIT_KNOTS) {
         slide(fit);
     }

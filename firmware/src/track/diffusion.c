@@ -26,9 +26,9 @@ struct instant {
     size_t count;
 };
 
-static mh_real square(mh_real a) { return a * a; }
+static mh_real squared(mh_real a) { return a * a; }
 
-static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return square(a.x - b.x) + square(a.y - b.y); }
+static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return squared(a.x - b.x) + squared(a.y - b.y); }
 
 static void rank(struct ranking *ranking, size_t index, mh_real score)
 {
@@ -107,12 +107,12 @@ static mh_real noise_variance(const struct mh_diffusion_config *config, const st
 {
     const mh_real now = mh_q20_to_real(m->value);
     const mh_real before = now - mh_q20_to_real(m->increment);
-    return 2.0f * square(config->additive_sd) + square(config->relative_sd) * (square(now) + square(before));
+    return 2.0f * squared(config->additive_sd) + squared(config->relative_sd) * (squared(now) + squared(before));
 }
 
 static mh_real significance(const struct mh_diffusion_config *config, const struct mh_measurement *m)
 {
-    return mh_q20_to_real(m->increment) / mh_sqrt(noise_variance(config, m) + square(0.25f * config->chi));
+    return mh_q20_to_real(m->increment) / mh_sqrt(noise_variance(config, m) + squared(0.25f * config->chi));
 }
 
 static bool is_strong(const struct mh_diffusion_config *config, const struct mh_measurement *m)
@@ -138,7 +138,7 @@ static struct cluster find_cluster(const struct mh_diffusion *track, const struc
 {
     struct ranking strong;
     struct cluster cluster = {false, {0.0f, 0.0f}};
-    const mh_real radius2 = square(0.625f * track->config.reach_m);
+    const mh_real radius2 = squared(0.625f * track->config.reach_m);
     mh_real best = 0.0f;
     rank_strong(&track->config, now, CLUSTER_CANDIDATES, &strong);
     for (int i = 0; i < strong.count; i++) {
@@ -176,7 +176,7 @@ static void add_row(struct mh_diffusion *track, const struct mh_measurement *m)
     for (int i = 0; i < track->since && i < 16; i++) {
         unknown_past *= 0.5f;
     }
-    const mh_real variance = noise_variance(&track->config, m) + square(unknown_past);
+    const mh_real variance = noise_variance(&track->config, m) + squared(unknown_past);
     if (mh_trail_fit_add_row(&track->fit, mh_place_relative(&m->place, &track->origin), mh_q20_to_real(m->increment),
                              variance) == MH_OK) {
         track->used++;
@@ -191,7 +191,7 @@ static void add_rows(struct mh_diffusion *track, const struct instant *now, stru
     for (size_t i = 0; i < now->count; i++) {
         const struct mh_measurement *m = &now->measurements[i];
         const mh_real d2 = distance2(mh_place_relative(&m->place, &track->origin), centre);
-        if (has_increment(m) && d2 <= square(radius)) {
+        if (has_increment(m) && d2 <= squared(radius)) {
             rank(&near, i, -d2);
         }
     }
@@ -271,7 +271,7 @@ static bool is_lost(struct mh_diffusion *track, const struct cluster *cluster)
 {
     const mh_real bad = misfit(&track->fit);
     const bool astray =
-        cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > square(track->config.reach_m);
+        cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > squared(track->config.reach_m);
     track->doubtful = bad > 6.0f ? track->doubtful + 1 : 0;
     track->astray = astray ? track->astray + 1 : 0;
     return cluster->found && (track->doubtful >= 3 || bad > 24.0f || track->astray >= 4);
@@ -287,7 +287,8 @@ static enum mh_status follow(struct mh_diffusion *track, const struct instant *n
     add_rows(track, now, track->asked, track->asked_radius);
     enum mh_status status = mh_trail_fit_solve(fit);
     if (status == MH_OK && cluster.found &&
-        (misfit(fit) > 1.0f || distance2(newest(fit)->place, cluster.centre) > square(0.25f * track->config.reach_m))) {
+        (misfit(fit) > 1.0f ||
+         distance2(newest(fit)->place, cluster.centre) > squared(0.25f * track->config.reach_m))) {
         status = second_start(fit, cluster.centre);
     }
     *restarted = status == MH_OK && is_lost(track, &cluster);
@@ -312,7 +313,7 @@ static void extrapolate(const struct mh_diffusion *track, mh_real ahead, struct 
     estimate->raw = estimate->position;
 
     const mh_real f = ahead / duration, g = 1.0f + f, steps = ahead / interval;
-    const mh_real turns = square(fit->model.turn_mps2 * interval * interval) * steps * (steps + 1.0f) *
+    const mh_real turns = squared(fit->model.turn_mps2 * interval * interval) * steps * (steps + 1.0f) *
                           (2.0f * steps + 1.0f) * (1.0f / 6.0f);
     mh_real pp[4], pq[4], qq[4];
     mh_trail_fit_block(fit, m, m, pp);
@@ -330,10 +331,10 @@ static void ask(struct mh_diffusion *track, const struct instant *now)
     size_t answers = 0;
     for (size_t i = 0; i < now->count; i++) {
         const struct mh_vec2 place = mh_place_relative(&now->measurements[i].place, &track->origin);
-        answers += distance2(place, track->asked) <= square(track->asked_radius) ? 1u : 0u;
+        answers += distance2(place, track->asked) <= squared(track->asked_radius) ? 1u : 0u;
     }
     if (now->count > 0) {
-        const mh_real density = (mh_real)answers / (MH_PI * square(track->asked_radius));
+        const mh_real density = (mh_real)answers / (MH_PI * squared(track->asked_radius));
         track->density = track->density > 0.0f ? track->density + 0.2f * (density - track->density) : density;
     }
     struct mh_estimate next;
@@ -347,31 +348,39 @@ static void ask(struct mh_diffusion *track, const struct instant *now)
     track->asked.y = last->place.y + 0.75f * (next.position.y - last->place.y);
 }
 
-/* A place to measure from before there is a track: the node with the largest increment. False if there is none. */
-static bool choose_origin(struct mh_diffusion *track, const struct instant *now)
+/* The measurement with the largest increment of at least chi; NULL if there is none. */
+static const struct mh_measurement *strongest(const struct mh_diffusion *track, const struct instant *now)
 {
-    struct ranking strong;
-    rank_strong(&track->config, now, 1, &strong);
+    const struct mh_measurement *best = NULL;
+    for (size_t i = 0; i < now->count; i++) {
+        const struct mh_measurement *m = &now->measurements[i];
+        if (is_strong(&track->config, m) && (best == NULL || m->increment > best->increment)) {
+            best = m;
+        }
+    }
+    return best;
+}
+
+static size_t count_detections(const struct mh_diffusion *track, const struct instant *now)
+{
     size_t detections = 0;
     for (size_t i = 0; i < now->count; i++) {
         detections += mh_q20_to_real(now->measurements[i].value) > track->config.chi ? 1u : 0u;
     }
-    if (strong.count == 0 || detections < DETECTIONS_LEAST) {
-        return false;
-    }
-    track->origin = now->measurements[strong.index[0]].place;
-    bound_region(track);
-    return true;
+    return detections;
 }
 
 /* The work of one instant, after which `tracking` tells whether there is a position. */
 static void work(struct mh_diffusion *track, const struct instant *now, bool *started)
 {
+    const struct mh_measurement *peak = strongest(track, now);
     enum mh_status status = MH_OK;
     *started = false;
     if (track->tracking) {
         status = follow(track, now, started);
-    } else if (choose_origin(track, now)) {
+    } else if (peak != NULL && count_detections(track, now) >= DETECTIONS_LEAST) {
+        track->origin = peak->place;
+        bound_region(track);
         const struct cluster cluster = find_cluster(track, now);
         if (cluster.found) {
             track->fit.log_rate = mh_log(track->config.release_gps);
@@ -382,9 +391,7 @@ static void work(struct mh_diffusion *track, const struct instant *now, bool *st
             *started = true;
         }
     }
-    struct ranking strong;
-    rank_strong(&track->config, now, 1, &strong);
-    track->silent = strong.count > 0 ? 0 : track->silent + 1;
+    track->silent = peak != NULL ? 0 : track->silent + 1;
     track->tracking = track->tracking && status == MH_OK && track->silent <= MH_DIFFUSION_SILENCE;
     if (track->tracking) {
         if (track->fit.row_count > 0) {
