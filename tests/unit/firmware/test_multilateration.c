@@ -7,7 +7,7 @@
 void setUp(void) {}
 void tearDown(void) {}
 
-static const struct mh_place square[5] = {
+static const struct mh_place yard[5] = {
     {1000000, 2000000, 2000}, {1010000, 2000000, 1000}, {1010000, 2010000, 3000}, {1000000, 2010000, 0}, {1005000, 2004000, 500}};
 
 /* the exact ranges from `anchors` to (x, y) m from the first one, at 1 m above ground */
@@ -29,8 +29,8 @@ static void exact_ranges_give_the_place(void)
     struct mh_measurement m[5];
     struct mh_fix fix;
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        range_all(m, square, 5, places[i][0], places[i][1]);
-        TEST_ASSERT_EQUAL_INT(MH_OK, mh_multilaterate(m, 5, &square[0], 1.0f, 0.1f, &fix));
+        range_all(m, yard, 5, places[i][0], places[i][1]);
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_multilaterate(m, 5, &yard[0], 1.0f, 0.1f, &fix));
         TEST_ASSERT_FLOAT_WITHIN(2e-3f, places[i][0], fix.position.x);
         TEST_ASSERT_FLOAT_WITHIN(2e-3f, places[i][1], fix.position.y);
         TEST_ASSERT_EQUAL_UINT16(5, fix.agreeing);
@@ -45,7 +45,7 @@ static void covariance_of_the_square(void)
     struct mh_measurement m[4];
     struct mh_fix fix;
     for (int i = 0; i < 4; i++) {
-        flat[i] = square[i];
+        flat[i] = yard[i];
         flat[i].z_mm = 1000;
     }
     range_all(m, flat, 4, 5, 5);
@@ -60,9 +60,9 @@ static void one_false_range_of_five(void)
     struct mh_measurement m[5];
     struct mh_fix fix;
     for (int wrong = 0; wrong < 5; wrong++) {
-        range_all(m, square, 5, 3, 6);
+        range_all(m, yard, 5, 3, 6);
         m[wrong].value += MH_Q20(4.0f);
-        TEST_ASSERT_EQUAL_INT(MH_OK, mh_multilaterate(m, 5, &square[0], 1.0f, 0.1f, &fix));
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_multilaterate(m, 5, &yard[0], 1.0f, 0.1f, &fix));
         TEST_ASSERT_FLOAT_WITHIN(0.1f, 3, fix.position.x);
         TEST_ASSERT_FLOAT_WITHIN(0.1f, 6, fix.position.y);
         TEST_ASSERT_EQUAL_UINT16(4, fix.agreeing);
@@ -87,20 +87,20 @@ static void what_cannot_be_located(void)
     struct mh_fix fix, before;
     memset(&fix, 0x5a, sizeof fix);
     before = fix;
-    range_all(m, square, 5, 3, 6);
-    TEST_ASSERT_EQUAL_INT(MH_ERR_TOO_FEW, mh_multilaterate(m, 2, &square[0], 1.0f, 0.1f, &fix));
-    TEST_ASSERT_EQUAL_INT(MH_ERR_TOO_FEW, mh_multilaterate(m, 0, &square[0], 1.0f, 0.1f, &fix));
-    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_multilaterate(m, 5, &square[0], 1.0f, 0, &fix));
-    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_multilaterate(m, 5, &square[0], NAN, 0.1f, &fix));
+    range_all(m, yard, 5, 3, 6);
+    TEST_ASSERT_EQUAL_INT(MH_ERR_TOO_FEW, mh_multilaterate(m, 2, &yard[0], 1.0f, 0.1f, &fix));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_TOO_FEW, mh_multilaterate(m, 0, &yard[0], 1.0f, 0.1f, &fix));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_multilaterate(m, 5, &yard[0], 1.0f, 0, &fix));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_multilaterate(m, 5, &yard[0], NAN, 0.1f, &fix));
     m[1].value = 0; /* no range */
     m[2].value = -1;
-    TEST_ASSERT_EQUAL_INT(MH_ERR_TOO_FEW, mh_multilaterate(m, 4, &square[0], 1.0f, 0.1f, &fix));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_TOO_FEW, mh_multilaterate(m, 4, &yard[0], 1.0f, 0.1f, &fix));
     /* spheres that do not meet */
-    range_all(m, square, 3, 3, 6);
+    range_all(m, yard, 3, 3, 6);
     for (int i = 0; i < 3; i++) {
         m[i].value = MH_Q20(1.5f);
     }
-    TEST_ASSERT_EQUAL_INT(MH_NONE, mh_multilaterate(m, 3, &square[0], 1.0f, 0.1f, &fix));
+    TEST_ASSERT_EQUAL_INT(MH_NONE, mh_multilaterate(m, 3, &yard[0], 1.0f, 0.1f, &fix));
     /* three anchors within 10 cm see a target 50 m away in one direction only */
     const struct mh_place close[3] = {{0, 0, 1000}, {100, 0, 1000}, {0, 100, 1000}};
     range_all(m, close, 3, 30, 40);
