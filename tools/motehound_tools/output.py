@@ -82,9 +82,11 @@ class Output:
             raise Failure(f"{file}: not JSON: {error}") from None
         if not isinstance(summary, dict) or not isinstance(summary.get("metrics"), dict):
             raise Failure(f"{file}: expected an object with `metrics`")
-        for name, entry in [*summary["metrics"].items(), *summary.get("pooled", {}).items()]:
+        for name, entry in summary["metrics"].items():
             if not isinstance(entry, dict) or any(key not in entry for key in STATISTICS):
                 raise Failure(f"{file}: `{name}` needs {', '.join(STATISTICS)}")
+        if not isinstance(summary.get("pooled", {}), dict):
+            raise Failure(f"{file}: `pooled` is not an object")
         track = read_table(folder / "track.csv", TRACK_COLUMNS, OPTIONAL_COLUMNS)
         runs = read_table(folder / "runs.csv", ("run", "seed"))
         described = folder / "scenario.json"
@@ -95,15 +97,15 @@ class Output:
             nodes = np.stack([table["x_m"], table["y_m"]], axis=-1)
         return Output(folder, summary, runs, track, nodes, Scenario.read(described) if described.exists() else None)
 
-    def statistic(self, metric: str, which: str = "mean", group: str = "metrics") -> float:
-        """A figure of the summary, NaN where it was not measured."""
-        found = self.summary.get(group, {}).get(metric, {}).get(which)
+    def statistic(self, metric: str, which: str = "mean") -> float:
+        """A statistic over the runs, NaN where the metric does not apply."""
+        found = self.summary["metrics"].get(metric, {}).get(which)
         return float(found) if isinstance(found, (int, float)) else float("nan")
 
-    def pooled(self, metric: str, which: str) -> float:
-        """Over the estimates of all runs together, where the summary has it, otherwise over the runs."""
-        found = self.statistic(metric, which, "pooled")
-        return found if np.isfinite(found) else self.statistic(metric, which)
+    def pooled(self, metric: str) -> float:
+        """Over the estimates of all runs together where that makes sense, otherwise the mean over the runs."""
+        found = self.summary.get("pooled", {}).get(metric)
+        return float(found) if isinstance(found, (int, float)) else self.statistic(metric)
 
     def one_run(self, run: int) -> dict[str, Array]:
         chosen = self.track["run"] == run
@@ -125,18 +127,27 @@ class Sweep:
 
 
 def read(folder: Path) -> Output | Sweep:
-    """The folder of one call, or of a sweep: sub-folders named `key=value`."""
+    """The folder of one call, or of a sweep: a sub-folder for each value, named `value` or `key=value`."""
     if not folder.is_dir():
         raise Failure(f"{folder}: no such folder")
-    parts = [child for child in folder.iterdir() if child.is_dir() and "=" in child.name]
+    parts = [child for child in sorted(folder.iterdir()) if (child / "summary.json").exists()]
     if (folder / "summary.json").exists() or not parts:
         return Output.read(folder)
-    keys = {child.name.partition("=")[0] for child in parts}
+    try:
+        parts.sort(key=_swept_value)
+    except ValueError:
+        raise Failure(f"{folder}: the sub-folders of a sweep are named `value` or `key=value`, with numbers") from None
+    outputs = [Output.read(part) for part in parts]
+    keys = {_swept_key(one) for one in outputs}
     if len(keys) != 1:
         raise Failure(f"{folder}: the sub-folders vary several keys: {', '.join(sorted(keys))}")
-    try:
-        ordered = sorted(parts, key=lambda child: float(child.name.partition("=")[2]))
-    except ValueError:
-        raise Failure(f"{folder}: the sub-folders of a sweep are named `key=number`") from None
-    values = [float(child.name.partition("=")[2]) for child in ordered]
-    return Sweep(folder, keys.pop(), values, [Output.read(child) for child in ordered])
+    return Sweep(folder, keys.pop(), [_swept_value(part) for part in parts], outputs)
+
+
+def _swept_value(folder: Path) -> float:
+    return float(folder.name.rpartition("=")[2])
+
+
+def _swept_key(one: Output) -> str:
+    named = one.folder.name.rpartition("=")[0]
+    return named or (str(one.scenario.value("sweep.key")) if one.scenario else "value")

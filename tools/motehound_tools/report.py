@@ -54,12 +54,12 @@ def as_image(picture: Picture) -> str:
 
 
 def figure(results: Output, metric: str, unit: str) -> str:
-    return number(results.pooled(metric, "mean") * (100.0 if unit == "%" else 1.0))
+    return number(results.pooled(metric) * (100.0 if unit == "%" else 1.0))
 
 
 def headline(results: Output) -> list[tuple[str, str, str]]:
     """(label, value, unit) of the figures that are said first."""
-    known = [head for head in HEADLINES if math.isfinite(results.pooled(head[0], "mean"))]
+    known = [head for head in HEADLINES if math.isfinite(results.pooled(head[0]))]
     return [(label, figure(results, metric, unit), unit) for metric, label, unit in known]
 
 
@@ -69,7 +69,7 @@ def statistics(results: Output) -> list[dict[str, str]]:
         row = {key: number(entry[key]) for key in output.STATISTICS}
         pooled = results.summary.get("pooled", {}).get(name)
         rows.append(
-            {"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled["mean"]) if pooled else "", **row}
+            {"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled), **row}
         )
     return rows
 
@@ -118,7 +118,7 @@ def render(found: Output | Sweep) -> str:
         lstrip_blocks=True,
     )
     sweep = found if isinstance(found, Sweep) else None
-    columns = [head for head in HEADLINES if math.isfinite(first.pooled(head[0], "mean"))]
+    columns = [head for head in HEADLINES if math.isfinite(first.pooled(head[0]))]
     across = figures.sweep_picture(sweep) if sweep else None
     middle = sweep.outputs[len(sweep.outputs) // 2] if sweep else first
     return environment.get_template("report.html.j2").render(

@@ -90,7 +90,7 @@ def figure(found: Output, metric: str) -> float:
     """The metric over all estimates of all runs; for lost tracks the number of runs."""
     if metric == "track_lost":
         return float(np.nansum(found.runs["track_lost"])) if "track_lost" in found.runs else math.nan
-    return found.pooled(metric, "mean")
+    return found.pooled(metric)
 
 
 def near(what: str, case: Case, metric: str, wanted: float, within: float) -> Requirement:

@@ -87,6 +87,17 @@ def test_page_of_a_sweep(tmp_path: Path) -> None:
     assert isinstance(found, output.Sweep) and found.values == [0.5, 1.0, 10.0]
 
 
+def test_sweep_of_the_command_names_folders_by_value(tmp_path: Path) -> None:
+    for value in ("640", "1280", "1920"):
+        folder = write_output(tmp_path / value)
+        scenario = json.loads((folder / "scenario.json").read_text())
+        scenario["sweep"] = {"key": "network.nodes", "values": ["640", "1280", "1920"]}
+        (folder / "scenario.json").write_text(json.dumps(scenario))
+    found = output.read(tmp_path)
+    assert isinstance(found, output.Sweep)
+    assert found.key == "network.nodes" and found.values == [640.0, 1280.0, 1920.0]
+
+
 def test_page_without_scenario_and_truth(folder: Path) -> None:
     (folder / "scenario.json").unlink()
     lines = (folder / "track.csv").read_text().splitlines()
