@@ -24,8 +24,8 @@ static const char help[] =
     "  --sweep          do all runs for each value of the scenario's `sweep`, into DIR/VALUE\n"
     "  --help           this text\n"
     "\n"
-    "DIR gets summary.json, runs.csv, track.csv and nodes.csv; whole, or after an error or an interrupt not at all\n"
-    "(with --sweep: each DIR/VALUE).\n";
+    "DIR gets summary.json, runs.csv, track.csv, nodes.csv and scenario.json; whole, or after an error or an\n"
+    "interrupt not at all (with --sweep: each DIR/VALUE).\n";
 
 struct run_options {
     const char *scenario, *out, *bus_url;

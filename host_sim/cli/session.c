@@ -67,7 +67,8 @@ int session_execute(struct command *command, struct session *session)
     char *error = command->error;
     struct results results;
     struct progress progress;
-    if (results_open(&results, session->out, session->name, session->batch.seed, session->log, error,
+    const struct scenario *simulated = session->batch.recording == NULL ? session->batch.scenario : NULL;
+    if (results_open(&results, session->out, session->name, simulated, session->batch.seed, session->log, error,
                      COMMAND_ERROR_SIZE) != 0) {
         return 1;
     }

@@ -1,5 +1,6 @@
 #include "record/results.h"
 
+#include "record/scenario_json.h"
 #include "scenario/text.h"
 
 #include <jansson.h>
@@ -20,10 +21,10 @@ static void put_number(FILE *file, double value)
     }
 }
 
-int results_open(struct results *results, const char *out, const char *scenario_name, uint64_t seed, bool log,
-                 char *error, size_t error_size)
+int results_open(struct results *results, const char *out, const char *scenario_name, const struct scenario *scenario,
+                 uint64_t seed, bool log, char *error, size_t error_size)
 {
-    *results = (struct results){.scenario_name = scenario_name, .seed = seed};
+    *results = (struct results){.scenario_name = scenario_name, .scenario = scenario, .seed = seed};
     if (output_open(&results->output, out, error, error_size) != 0) {
         return -1;
     }
@@ -199,13 +200,13 @@ static json_t *summary(struct results *results, const char *version)
     return whole;
 }
 
-static int put_summary(struct results *results, const char *version, char *error, size_t error_size)
+/* Write `whole`, which is released, as a file of the folder. */
+static int put_json(struct results *results, const char *name, json_t *whole, char *error, size_t error_size)
 {
-    json_t *whole = summary(results, version);
     if (whole == NULL) {
-        return fail(error, error_size, "summary.json: no memory, or a name that is not UTF-8");
+        return fail(error, error_size, "%s: no memory, or a text that is not UTF-8", name);
     }
-    FILE *file = output_create(&results->output, "summary.json", error, error_size);
+    FILE *file = output_create(&results->output, name, error, error_size);
     if (file == NULL) {
         json_decref(whole);
         return -1;
@@ -213,21 +214,27 @@ static int put_summary(struct results *results, const char *version, char *error
     json_dumpf(whole, file, JSON_INDENT(2) | JSON_REAL_PRECISION(DIGITS));
     fputc('\n', file);
     json_decref(whole);
-    return output_finish(file, "summary.json", error, error_size);
+    return output_finish(file, name, error, error_size);
 }
 
 int results_commit(struct results *results, const char *version, char *error, size_t error_size)
 {
-    static const char *const names[] = {"runs.csv", "track.csv", "nodes.csv", "summary.json", "events.lcm"};
+    const char *names[6] = {"runs.csv", "track.csv", "nodes.csv", "summary.json"};
+    size_t count = 4;
     const bool logged = results->log != NULL;
-    bool sound = put_summary(results, version, error, error_size) == 0 &&
+    bool sound = put_json(results, "summary.json", summary(results, version), error, error_size) == 0 &&
                  output_sync(results->runs, "runs.csv", error, error_size) == 0 &&
                  output_sync(results->track, "track.csv", error, error_size) == 0;
+    if (sound && results->scenario != NULL) {
+        names[count++] = "scenario.json";
+        sound = put_json(results, "scenario.json", scenario_json(results->scenario), error, error_size) == 0;
+    }
     if (sound && logged) {
+        names[count++] = "events.lcm";
         sound = output_sync(results->log->f, "events.lcm", error, error_size) == 0;
     }
     if (sound) {
-        sound = output_commit(&results->output, names, logged ? 5 : 4, error, error_size) == 0;
+        sound = output_commit(&results->output, names, count, error, error_size) == 0;
     }
     results_discard(results);
     return sound ? 0 : -1;

@@ -21,7 +21,7 @@ def find(named: str | None) -> Path:
                 raise Failure(f"{wanted}: no such program")
             return Path(path)
     built = [
-        path for path in ROOT.glob("build/host*/host_sim/**/motehound") if path.is_file() and os.access(path, os.X_OK)
+        path for path in ROOT.glob("build/host*/motehound") if path.is_file() and os.access(path, os.X_OK)
     ]
     if built:
         return max(built, key=lambda path: path.stat().st_mtime)

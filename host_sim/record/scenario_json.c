@@ -1,0 +1,85 @@
+#include "record/scenario_json.h"
+
+#include "scenario/keys.h"
+
+#include <string.h>
+
+/* The word at `index` among words separated by '|'. */
+static json_t *word_at(const char *choices, unsigned index)
+{
+    while (index-- > 0) {
+        choices += strcspn(choices, "|") + 1;
+    }
+    return json_stringn(choices, strcspn(choices, "|"));
+}
+
+static json_t *points(const struct scenario *scenario)
+{
+    json_t *list = json_array();
+    for (unsigned i = 0; i < scenario->source.points_count; i++) {
+        const struct waypoint *point = &scenario->source.points[i];
+        json_array_append_new(list, json_pack("{s:f, s:f, s:f}", "x_m", point->x_m, "y_m", point->y_m, "speed_factor",
+                                              point->speed_factor));
+    }
+    return list;
+}
+
+static json_t *sweep_values(const struct scenario *scenario)
+{
+    json_t *list = json_array();
+    for (unsigned i = 0; i < scenario->sweep.values_count; i++) {
+        json_array_append_new(list, json_string(scenario->sweep.values[i]));
+    }
+    return list;
+}
+
+static json_t *value_of(const struct scenario *scenario, const struct scenario_key *key)
+{
+    const char *member = (const char *)scenario + key->offset;
+    switch (key->type) {
+    case KEY_NUMBER:
+        return json_real(*(const double *)member);
+    case KEY_COUNT:
+        return json_integer(*(const int64_t *)member);
+    case KEY_SWITCH:
+        return json_boolean(*(const bool *)member);
+    case KEY_CHOICE:
+        return word_at(key->choices, *(const unsigned *)member);
+    case KEY_WORD:
+    case KEY_TEXT:
+        return json_string(*(char *const *)member);
+    case KEY_POINTS:
+        return points(scenario);
+    case KEY_LIST:
+        return sweep_values(scenario);
+    }
+    return NULL;
+}
+
+json_t *scenario_json(const struct scenario *scenario)
+{
+    json_t *whole = json_object();
+    int status = whole == NULL ? -1 : 0;
+    for (size_t i = 0; i < scenario_key_count && status == 0; i++) {
+        const struct scenario_key *key = &scenario_keys[i];
+        const char *dot = strchr(key->path, '.');
+        json_t *section = whole;
+        const char *name = key->path;
+        if (dot != NULL) {
+            char section_name[40] = "";
+            memcpy(section_name, key->path, (size_t)(dot - key->path));
+            name = dot + 1;
+            section = json_object_get(whole, section_name);
+            if (section == NULL) {
+                section = json_object();
+                status |= json_object_set_new(whole, section_name, section);
+            }
+        }
+        status |= json_object_set_new(section, name, value_of(scenario, key));
+    }
+    if (status != 0) {
+        json_decref(whole);
+        return NULL;
+    }
+    return whole;
+}
