@@ -17,6 +17,7 @@ struct truth {
 /* What a run tells. Any of the functions may be NULL. Called in the order of simulated time. */
 struct observer {
     void *context;
+    /* Once for every mote, before all else: the nodes by id, then the sink, whose id is the largest. */
     void (*node)(void *context, mh_node_id id, const struct mh_place *place);
     /* At every sampling instant. */
     void (*truth)(void *context, const struct truth *truth);

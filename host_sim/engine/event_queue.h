@@ -1,6 +1,6 @@
 /* Simulated time and what happens next.
  *
- * A 4-ary heap of 16-byte entries (four children share a cache line). Events of equal time come out in the order in which they
+ * A 4-ary heap of 16-byte entries. Events of equal time come out in the order in which they
  * went in, so a run does not depend on how the heap happens to be arranged. Cost: push O(log n), pop O(log n), no allocation but
  * to grow. */
 #ifndef MOTEHOUND_SIM_EVENT_QUEUE_H
