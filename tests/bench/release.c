@@ -1,42 +1,43 @@
 #include "release.h"
 
-enum { PUFFS = 12, SIDE = 9 };
-static const mh_real pitch_m = 0.9f, release_gps = 100.0f;
+enum { TRAIL_S = 12, PUFFS_PER_S = 4, SIDE = 9 };
+static const mh_real release_gps = 100.0f, ring_m = 0.1f;
 
-mh_tick release_time(unsigned step) { return (mh_tick)(step + PUFFS) * RELEASE_INTERVAL; }
+mh_tick release_time(unsigned step) { return (mh_tick)(step + TRAIL_S) * RELEASE_INTERVAL; }
 
-static mh_real source_x(unsigned step) { return (mh_real)step + 0.37f; }
+static mh_real source_x(unsigned step) { return (mh_real)(step + TRAIL_S) + 0.37f; }
 
-/* Luo, Eq. (1) and (2) with one puff a second: the concentration at (x, y) at instant number `step`. */
+/* Luo, Eq. (1), the integral by midpoints: the concentration at (x, y) at instant number `step`. */
 static mh_real concentration(mh_real x, mh_real y, unsigned step)
 {
     mh_real sum = 0;
-    for (unsigned age = 1; age <= PUFFS; age++) {
-        const mh_real four_dt = 4.0f * (mh_real)age;
-        const mh_real dx = x - (source_x(step + PUFFS) - (mh_real)age);
-        sum += release_gps / (MH_PI * four_dt) * mh_exp(-(dx * dx + y * y) / four_dt);
+    for (unsigned i = 0; i < TRAIL_S * PUFFS_PER_S; i++) {
+        const mh_real age_s = ((mh_real)i + 0.5f) / (mh_real)PUFFS_PER_S;
+        const mh_real dx = x - (source_x(step) - age_s);
+        sum +=
+            release_gps / (mh_real)PUFFS_PER_S / (MH_PI * 4.0f * age_s) * mh_exp(-(dx * dx + y * y) / (4.0f * age_s));
     }
     return sum;
 }
 
-void release_measurements(unsigned step, struct mh_measurement *measurements)
+void release_measurements(unsigned step, mh_real pitch_m, mh_q20 least, struct mh_measurement *measurements)
 {
-    const mh_real centre_m = source_x(step + PUFFS) - 1.0f;
+    const mh_real centre_m = source_x(step) - 1.0f;
     const int first_column = (int)(centre_m / pitch_m) - SIDE / 2;
     unsigned count = 0;
-    for (mh_real radius_m = 0.5f; radius_m < 5.0f; radius_m += 0.1f) { /* rings outwards */
+    for (mh_real radius_m = ring_m; radius_m < SIDE / 2 * pitch_m; radius_m += ring_m) { /* rings outwards */
         for (int i = 0; i < SIDE * SIDE && count < RELEASE_MEASUREMENTS; i++) {
             const int column = first_column + i / SIDE;
             const int row = i % SIDE - SIDE / 2;
             const mh_real x = (mh_real)column * pitch_m;
             const mh_real y = ((mh_real)row + 0.21f) * pitch_m;
             const mh_real distance_m = mh_sqrt((x - centre_m) * (x - centre_m) + y * y);
-            if (distance_m > radius_m || distance_m <= radius_m - 0.1f) {
+            if (distance_m > radius_m || distance_m <= radius_m - ring_m) {
                 continue;
             }
             const mh_q20 now = mh_q20_from_real(concentration(x, y, step));
             const mh_q20 before = mh_q20_from_real(concentration(x, y, step - 1));
-            if (now - before < MH_Q20(0.25f)) {
+            if (now - before < least) {
                 continue;
             }
             const struct mh_measurement measurement = {

@@ -6,9 +6,9 @@
 
 enum { RELEASE_MEASUREMENTS = 20, RELEASE_INTERVAL = 1000 };
 
-/* The measurements of sampling instant number `step` from the RELEASE_MEASUREMENTS nodes with an increment above chi = 0.2 g/m2 that
- * are nearest to where the source was one interval before, ordered by node. */
-void release_measurements(unsigned step, struct mh_measurement *measurements);
+/* The measurements of sampling instant number `step`, ordered by node: of those nodes of a grid with this pitch (0.5 to 3 m)
+ * whose increment is at least `least`, the RELEASE_MEASUREMENTS that are nearest to where the source was one interval before. */
+void release_measurements(unsigned step, mh_real pitch_m, mh_q20 least, struct mh_measurement *measurements);
 
 /* The sampling instant as time. */
 mh_tick release_time(unsigned step);
