@@ -50,7 +50,7 @@ static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row
     }
     for (int k = fit->trail.count > 0 ? 0 : 1; k < fit->knot_count; k++) {
         const struct mh_fit_knot *end = &fit->knots[k];
-        const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count - 1];
+        const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count > 0 ? fit->trail.count - 1 : 0];
         struct mh_segment segment = {k > 0 ? fit->knots[k - 1].place : frozen->place, end->place, 0.0f, 0.0f};
         const mh_tick start = k > 0 ? fit->knots[k - 1].time : frozen->time;
         struct mh_segment_field field = {0.0f, {0.0f, 0.0f}, {0.0f, 0.0f}};
@@ -102,7 +102,7 @@ static mh_real add_motion_prior(const struct mh_trail_fit *fit, int k, mh_real *
         const mh_real coefficients[2] = {-c, c};
         return add_motion(fit, normal, gradient, 0, 2, coefficients, none);
     }
-    const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count - 1];
+    const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count > 0 ? fit->trail.count - 1 : 0];
     const mh_real before = seconds(k > 1 ? fit->knots[k - 2].time : frozen->time, fit->knots[k - 1].time);
     const mh_real scale = 1.0f / (fit->model.turn_mps2 * 0.5f * (before + after));
     const mh_real coefficients[3] = {scale / before, -scale / before - scale / after, scale / after};
