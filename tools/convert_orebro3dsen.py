@@ -34,17 +34,30 @@ def three(text):
 three.__name__ = "three numbers, as in 1,3,5"
 
 
+def positive(text):
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+positive.__name__ = "whole number above 0"
+
+
 def convert(arguments):
     name = os.path.splitext(os.path.basename(arguments.log))[0]
     source = arguments.source or SOURCES.get(name)
     if source is None:
         raise Refused(f"{arguments.log}: the file's name is not one of Exp01 to Exp10, so --source must say where the source is")
     columns = ["# t (s)"] + [f"C_{i}{j}{k} (ppm)" for i, j, k in GRID]
-    readings, before = [], None
+    readings, before, row = [], None, -1
     for line, (time, *values) in read_columns(arguments.log, columns, encoding="mac_roman"):
         if before is not None and time <= before:
             raise Refused(f"{arguments.log}:{line}: t: {time:g} s, expected after {before:g}")
         before = time
+        row += 1
+        if row % arguments.every:
+            continue
         for (i, j, k), value in zip(GRID, values):
             if abs(value) > HIGHEST_PPM:
                 raise Refused(f"{arguments.log}:{line}: C_{i}{j}{k}: {value:g} ppm, expected within +- {HIGHEST_PPM}")
@@ -61,6 +74,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", help="Exp01.csv to Exp10.csv")
     parser.add_argument("out", help="folder for nodes.csv, readings.csv and truth.csv; made if it does not exist")
+    parser.add_argument("--every", type=positive, default=1, metavar="N", help="keep every N-th row (default 1: 2 Hz)")
     parser.add_argument("--x", type=three, default=(1, 3, 5), metavar="X0,X1,X2", help="of the grid, m (default 1,3,5)")
     parser.add_argument("--y", type=three, default=(1, 3, 5), metavar="Y0,Y1,Y2", help="of the grid, m (default 1,3,5)")
     parser.add_argument("--z", type=three, default=(0.45, 1.20, 2.23), metavar="Z0,Z1,Z2",
