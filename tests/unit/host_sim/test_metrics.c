@@ -1,0 +1,195 @@
+#include "bus/bus.h"
+#include "port.h"
+#include "record/metrics.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Unity is built without double. */
+static bool near(double expected, double actual) { return fabs(expected - actual) <= 1e-9 * (1 + fabs(expected)); }
+#define NEAR(expected, actual) TEST_ASSERT_TRUE(near(expected, actual))
+
+static struct scenario scenario;
+static struct recorder recorder;
+static struct errors errors;
+static double values[METRIC_COUNT];
+static char error[300];
+
+void setUp(void)
+{
+    memset(&recorder, 0, sizeof recorder);
+    memset(&errors, 0, sizeof errors);
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
+}
+void tearDown(void)
+{
+    recorder_free(&recorder);
+    errors_free(&errors);
+    scenario_free(&scenario);
+}
+
+static void statistics_have_their_closed_forms(void)
+{
+    struct samples samples = {0};
+    TEST_ASSERT_TRUE(isnan(samples_mean(&samples)) && isnan(samples_rms(&samples)) && isnan(samples_sd(&samples)) &&
+                     isnan(samples_quantile(&samples, 0.5)));
+    TEST_ASSERT_EQUAL_INT(0, samples_add(&samples, 3));
+    TEST_ASSERT_TRUE(samples_sd(&samples) == 0 && samples_quantile(&samples, 0.95) == 3);
+    samples.count = 0;
+    /* 1..n shuffled by a step that has no factor in common with n */
+    const int n = 1001;
+    for (int i = 0; i < n; i++) {
+        TEST_ASSERT_EQUAL_INT(0, samples_add(&samples, 1 + i * 389 % n));
+    }
+    NEAR((n + 1) / 2.0, samples_mean(&samples));
+    NEAR(sqrt(n * (n + 1) / 12.0), samples_sd(&samples));
+    NEAR(sqrt((n + 1) * (2.0 * n + 1) / 6), samples_rms(&samples));
+    NEAR(501, samples_quantile(&samples, 0.5));
+    NEAR(951, samples_quantile(&samples, 0.95));
+    NEAR(1 + 0.123456 * 1000, samples_quantile(&samples, 0.123456));
+    NEAR(1, samples_quantile(&samples, 0));
+    NEAR(1001, samples_quantile(&samples, 1));
+    samples_free(&samples);
+}
+
+/* The simulation's side: estimates at instant k with the truth at (k, 0), through the bus, as a run does. */
+static void tell(const struct observer *observer, double time_s, bool present, float x, float y, float variance,
+                 uint8_t target)
+{
+    const struct truth truth = {time_s, time_s, 0, present};
+    const struct truth arrival = {time_s - 0.5, time_s - 0.5, 0, present && time_s >= 0.5};
+    const struct mh_estimate estimate = {.origin = {10000, -20000, 0},
+                                         .position = {x - 10, y + 20},
+                                         .raw = {x - 10, y + 20 + 4},
+                                         .covariance = {variance, 0, 4 * variance},
+                                         .age = 0.5f,
+                                         .target = target};
+    observer->truth(observer->context, &truth);
+    observer->estimate(observer->context, time_s, &estimate, &truth, &arrival);
+}
+
+static void run_of(int instants, void (*run)(const struct observer *observer, int instant))
+{
+    struct bus bus;
+    struct simulation_counters counters = {
+        .frames_sent = {1, 20, 300}, .frames_received = 7, .motes = {.reports_asked = 9}};
+    TEST_ASSERT_EQUAL_INT(0, bus_open(&bus, 0, NULL, NULL, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, recorder_subscribe(&recorder, bus.lcm));
+    const struct observer observer = bus_observer(&bus);
+    bus_begin(&bus, 5, "a scenario", "1.2.3");
+    for (int i = 0; i < instants; i++) {
+        run(&observer, i);
+    }
+    bus_end(&bus, &counters);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, bus_close(&bus, error, sizeof error), error);
+    TEST_ASSERT_FALSE(recorder.failed);
+    TEST_ASSERT_EQUAL_INT(0, errors_of(&recorder, &scenario, &errors));
+    metrics_of_run(&recorder, &scenario, &errors, values);
+}
+
+/* Off by (0, 3) at every instant but the first three, which are far away; the source goes after instant 9. */
+static void three_metres_off(const struct observer *observer, int i)
+{
+    tell(observer, i, i < 10, (float)i, i < 3 ? 100 : 3, 0.25f, 0);
+}
+
+static void errors_leave_out_the_first_and_the_time_without_a_source(void)
+{
+    run_of(12, three_metres_off);
+    TEST_ASSERT_EQUAL_size_t(7, errors.position.count);
+    NEAR(3, values[METRIC_POSITION_RMSE_M]);
+    NEAR(3, values[METRIC_POSITION_MEDIAN_M]);
+    NEAR(3, values[METRIC_POSITION_P95_M]);
+    NEAR(7, values[METRIC_RAW_POSITION_RMSE_M]);
+    NEAR(sqrt(9.25), values[METRIC_POSITION_RMSE_AT_ARRIVAL_M]);
+    NEAR(9, values[METRIC_NEES_MEDIAN]); /* 3^2 / (4 * 0.25) */
+    NEAR(1, values[METRIC_TRACKED_SHARE]);
+    NEAR(0, values[METRIC_TRACK_LOST]);
+    NEAR(12, values[METRIC_ESTIMATES]);
+    NEAR(321, values[METRIC_FRAMES_SENT]);
+    NEAR(1, values[METRIC_FRAMES_SENT_BEACONS]);
+    NEAR(20, values[METRIC_FRAMES_SENT_REPORTS]);
+    NEAR(300, values[METRIC_FRAMES_SENT_REQUESTS]);
+    NEAR(7, values[METRIC_FRAMES_RECEIVED]);
+    NEAR(9, values[METRIC_REPORTS_ASKED]);
+}
+
+/* Every other instant without a position; no covariance. */
+static void half_of_the_time(const struct observer *observer, int i)
+{
+    const struct truth truth = {i, i, 0, true};
+    if (i % 2 == 0) {
+        tell(observer, i, true, (float)i, 0, 0, 0);
+    } else {
+        observer->truth(observer->context, &truth);
+    }
+}
+
+static void what_a_tracker_does_not_state_does_not_apply(void)
+{
+    run_of(20, half_of_the_time);
+    NEAR(0.5, values[METRIC_TRACKED_SHARE]);
+    NEAR(0, values[METRIC_POSITION_RMSE_M]);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_NEES_MEDIAN]));
+}
+
+static void blind(const struct observer *observer, int i) { tell(observer, i, false, 1, 2, 1, 0); }
+
+static void without_truth_there_are_no_errors(void)
+{
+    run_of(20, blind);
+    for (size_t i = 0; i < METRIC_ESTIMATES; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(isnan(values[i]), metric_names[i]);
+    }
+    NEAR(20, values[METRIC_ESTIMATES]);
+}
+
+/* Two targets in turn; only target 1 is off by more than 5 m, from instant 20 for 4 and from 40 for 5 of its own instants. */
+static void target_1_strays(const struct observer *observer, int i)
+{
+    const bool strays = i % 2 == 1 && ((i >= 20 && i < 28) || (i >= 40 && i < 50));
+    tell(observer, i, true, (float)i, strays ? 5.01f : 4.99f, 1, (uint8_t)(i % 2));
+}
+
+static void a_track_is_lost_after_so_many_successive_errors_of_one_target(void)
+{
+    run_of(30, target_1_strays);
+    NEAR(0, values[METRIC_TRACK_LOST]);
+    tearDown();
+    setUp();
+    run_of(60, target_1_strays);
+    NEAR(1, values[METRIC_TRACK_LOST]);
+    TEST_ASSERT_EQUAL_size_t(60 - 2 * 3, errors.position.count);
+}
+
+static void pooled_errors_weigh_estimates_not_runs(void)
+{
+    struct errors one = {0}, pooled = {0};
+    double pooled_values[METRIC_ERRORS_COUNT];
+    for (int i = 0; i < 30; i++) {
+        TEST_ASSERT_EQUAL_INT(0, samples_add(&one.position, i < 10 ? 4 : 1));
+    }
+    TEST_ASSERT_EQUAL_INT(0, errors_append(&pooled, &one));
+    one.position.count = 10; /* the fours alone */
+    TEST_ASSERT_EQUAL_INT(0, errors_append(&pooled, &one));
+    metrics_of_errors(&pooled, pooled_values);
+    NEAR(sqrt((20 * 16 + 20 * 1) / 40.0), pooled_values[METRIC_POSITION_RMSE_M]);
+    NEAR(2.5, pooled_values[METRIC_POSITION_MEDIAN_M]);
+    TEST_ASSERT_TRUE(isnan(pooled_values[METRIC_RAW_POSITION_RMSE_M]));
+    errors_free(&one);
+    errors_free(&pooled);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(statistics_have_their_closed_forms);
+    RUN_TEST(errors_leave_out_the_first_and_the_time_without_a_source);
+    RUN_TEST(what_a_tracker_does_not_state_does_not_apply);
+    RUN_TEST(without_truth_there_are_no_errors);
+    RUN_TEST(a_track_is_lost_after_so_many_successive_errors_of_one_target);
+    RUN_TEST(pooled_errors_weigh_estimates_not_runs);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}

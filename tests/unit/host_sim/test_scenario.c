@@ -1,0 +1,224 @@
+#include "port.h"
+#include "scenario/folder.h"
+#include "scenario/keys.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct scenario scenario;
+static char error[1000];
+
+void setUp(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
+    error[0] = '\0';
+}
+void tearDown(void) { scenario_free(&scenario); }
+
+static int parse(const char *yaml)
+{
+    return scenario_parse(yaml, strlen(yaml), "a.yaml", &scenario, error, sizeof error);
+}
+
+/* Unity is built without double; these numbers are exact in both or compared as text. */
+static void assert_number(const char *expected, double actual)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.12g", actual);
+    TEST_ASSERT_EQUAL_STRING(expected, text);
+}
+
+static void every_default_is_inside_its_range_and_every_key_documented_once(void)
+{
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        TEST_ASSERT_EQUAL_PTR(&scenario_keys[i], scenario_key_find(scenario_keys[i].path));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(
+            0, scenario_set(&scenario, scenario_keys[i].path, scenario_keys[i].standard, error, sizeof error), error);
+    }
+    TEST_ASSERT_EQUAL_INT(0, scenario_check(&scenario, "defaults", error, sizeof error));
+}
+
+static void a_file_sets_what_it_names_and_leaves_the_rest(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0,
+                                  parse("name: x\n"
+                                        "source:\n"
+                                        "  path: waypoints\n"
+                                        "  points:\n"
+                                        "    - {x_m: 1, y_m: 2.5}\n"
+                                        "    - {x_m: -3e1, y_m: 4, speed_factor: 0.8}\n"
+                                        "  speed_mps: 2.25\n"
+                                        "network: {nodes: 640, layout: grid}\n"
+                                        "tracker: {name: luo, nonlinear: true}\n"
+                                        "sweep: {key: network.nodes, values: [640, 960]}\n"),
+                                  error);
+    TEST_ASSERT_EQUAL_STRING("x", scenario.name);
+    TEST_ASSERT_EQUAL_INT(PATH_WAYPOINTS, scenario.source.path);
+    TEST_ASSERT_EQUAL_UINT(2, scenario.source.points_count);
+    assert_number("2.5", scenario.source.points[0].y_m);
+    assert_number("1", scenario.source.points[0].speed_factor);
+    assert_number("-30", scenario.source.points[1].x_m);
+    assert_number("0.8", scenario.source.points[1].speed_factor);
+    assert_number("2.25", scenario.source.speed_mps);
+    TEST_ASSERT_EQUAL_INT64(640, scenario.network.nodes);
+    TEST_ASSERT_EQUAL_INT(LAYOUT_GRID, scenario.network.layout);
+    TEST_ASSERT_EQUAL_STRING("luo", scenario.tracker.name);
+    TEST_ASSERT_TRUE(scenario.tracker.nonlinear);
+    TEST_ASSERT_EQUAL_UINT(2, scenario.sweep.values_count);
+    TEST_ASSERT_EQUAL_STRING("960", scenario.sweep.values[1]);
+    assert_number("80", scenario.field.width_m);
+    assert_number("0.2", scenario.tracker.chi);
+}
+
+static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation(void)
+{
+    static const struct {
+        const char *yaml, *start, *part;
+    } cases[] = {
+        {"source:\n\n  speed_mps: fast\n", "a.yaml:3: source.speed_mps: expected a number 0.01 to 100, found 'fast'",
+         ""},
+        {"source: {speed_mps: 0x10}", "a.yaml:1: source.speed_mps: expected a number", "'0x10'"},
+        {"source: {speed_mps: .nan}", "a.yaml:1: source.speed_mps: expected a number", "'.nan'"},
+        {"source: {speed_mps: nan}", "a.yaml:1: source.speed_mps: expected a number", "'nan'"},
+        {"source: {speed_mps: inf}", "a.yaml:1: source.speed_mps: expected a number", "'inf'"},
+        {"source: {speed_mps: 1e999}", "a.yaml:1: source.speed_mps: expected a number", "'1e999'"},
+        {"source: {speed_mps: 0}", "a.yaml:1: source.speed_mps: expected a number 0.01 to 100, found '0'", ""},
+        {"source: {speed_mps: [1]}", "a.yaml:1: source.speed_mps: expected a single value, found a list", ""},
+        {"source: {speed_mps: }", "a.yaml:1: source.speed_mps: expected a number", "''"},
+        {"name: x\nsource:\n  sped_mps: 1\n", "a.yaml:3: source.sped_mps: unknown key", "source.speed_mps"},
+        {"sensors: {loss: 1}", "a.yaml:1: sensors: unknown key", ""},
+        {"source: 3", "a.yaml:1: source: expected a block of keys, found a single value", ""},
+        {"source: {points: [{x_m: 1, y_m: '1,5'}]}", "a.yaml:1: source.points[0].y_m: expected a number, found '1,5'",
+         ""},
+        {"source: {points: [{x_m: 1}]}", "a.yaml:1: source.points: expected a key y_m", ""},
+        {"source: {points: [{x_m: 1, y_m: 2, z: 3}]}", "a.yaml:1: source.points.z: unknown key", ""},
+        {"source: {points: []}", "a.yaml:1: source.points: expected 1 to 1000 points", ""},
+        {"network: {nodes: 3}", "a.yaml:1: network.nodes: expected a whole number 4 to 1000000, found '3'", ""},
+        {"network: {nodes: 4.5}", "a.yaml:1: network.nodes: expected a whole number", "'4.5'"},
+        {"tracker: {name: kalman}", "a.yaml:1: tracker.name: expected one of diffusion/luo/range, found 'kalman'", ""},
+        {"tracker: {nonlinear: yes}", "a.yaml:1: tracker.nonlinear: expected true or false, found 'yes'", ""},
+        {"name: a\nname: b", "a.yaml:1: name: expected once, found twice", ""},
+        {"name: a\n---\nname: b", "a.yaml:1: ", "documents"},
+        {"name: a\n  source: {", "a.yaml:2: expected YAML: ", ""},
+        {"name: \"\\xZZ\"", "a.yaml:1: expected YAML: ", ""},
+        {"name: \xff", "a.yaml:", "expected YAML: "},
+        {"", "a.yaml:1: expected keys of a scenario, found nothing", ""},
+        {"- 1", "a.yaml:1: expected a block of keys, found a list", ""},
+        {"name: &a x\ndescription: *a", "a.yaml:", "alias"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        tearDown();
+        setUp();
+        TEST_ASSERT_EQUAL_INT_MESSAGE(-1, parse(cases[i].yaml), cases[i].yaml);
+        TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(cases[i].start, error, strlen(cases[i].start), cases[i].yaml);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, cases[i].part), error);
+        TEST_ASSERT_NULL_MESSAGE(strchr(error, '\n'), error);
+    }
+}
+
+static void set_refuses_what_a_file_may_not_hold_and_changes_nothing_then(void)
+{
+    TEST_ASSERT_EQUAL_INT(-1, scenario_set(&scenario, "source.speed_mp", "1", error, sizeof error));
+    TEST_ASSERT_NOT_NULL(strstr(error, "source.speed_mps"));
+    TEST_ASSERT_EQUAL_INT(-1, scenario_set(&scenario, "sensor.relative_noise", "1.5", error, sizeof error));
+    TEST_ASSERT_EQUAL_STRING("sensor.relative_noise: expected a number 0 to 1, found '1.5'", error);
+    TEST_ASSERT_EQUAL_INT(-1, scenario_set(&scenario, "source.points", "1,2; 3", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, scenario_set(&scenario, "source.points", "1,2; 3,4,0", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, scenario_set(&scenario, "source.points", "1,2; 3,4,1,1", error, sizeof error));
+    TEST_ASSERT_EQUAL_UINT(2, scenario.source.points_count);
+    assert_number("78", scenario.source.points[1].y_m);
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "source.points", " 1 , 2 ;3,4, 0.5", error, sizeof error));
+    assert_number("0.5", scenario.source.points[1].speed_factor);
+}
+
+static void keys_that_contradict_each_other_are_refused(void)
+{
+    static const char *const cases[][4] = {
+        {"source.path", "waypoints", "source.points", "1,1"},
+        {"source.path", "arcs", "source.points", "1,1; 1,1"},
+        {"source.path", "still", "source.duration_s", "0"},
+        {"source.speed_mps", "0.01", "source.points", "0,0; 100000,0"},
+        {"sensor.outage_start_s", "90", "sensor.outage_s", "10"},
+        {"network.layout", "file", "network.file", ""},
+        {"network.sink_x_m", "81", "network.sink_y_m", "0"},
+        {"network.sink_x_m", "80", "network.sink_y_m", "-1"},
+        {"tracker.window_s", "1", "sensor.interval_s", "1"},
+        {"tracker.chi", "0", "tracker.name", "diffusion"},
+        {"sweep.key", "network.node", "sweep.values", "1"},
+        {"sweep.key", "network.nodes", "sweep.values", ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        tearDown();
+        setUp();
+        TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, cases[i][0], cases[i][1], error, sizeof error));
+        TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, cases[i][2], cases[i][3], error, sizeof error));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(-1, scenario_check(&scenario, "a.yaml", error, sizeof error), cases[i][0]);
+        TEST_ASSERT_EQUAL_STRING_LEN("a.yaml: ", error, 8);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "expected"), error);
+    }
+    tearDown();
+    setUp();
+    /* E1 lasts 96.3706 s */
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "sensor.outage_start_s", "76.37", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "sensor.outage_s", "20", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&scenario, "a.yaml", error, sizeof error), error);
+}
+
+static void count_sound(void *context, const char *name, const char *path)
+{
+    struct scenario listed;
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&listed));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &listed, error, sizeof error), error);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&listed, path, error, sizeof error), error);
+    TEST_ASSERT_EQUAL_STRING(name, listed.name);
+    TEST_ASSERT_TRUE(listed.description[0] != '\0');
+    scenario_free(&listed);
+    ++*(size_t *)context;
+}
+
+static void the_scenarios_that_come_along_are_sound(void)
+{
+    static const char *const names[] = {"luo_exp1", "luo_exp2", "luo_exp3", "luo_exp4"};
+    char path[SCENARIO_PATH_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_INT(0, scenario_find(names[i], path, error, sizeof error));
+    }
+    const size_t listed = scenario_list(count_sound, &count);
+    TEST_ASSERT_EQUAL_size_t(listed, count);
+    TEST_ASSERT_TRUE(count >= 4);
+    TEST_ASSERT_EQUAL_INT(-1, scenario_find("luo_exp9", path, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, scenario_find("./luo_exp1", path, error, sizeof error));
+}
+
+static void a_deployment_file_is_found_beside_its_scenario(void)
+{
+    char folder[] = "/tmp/motehound-XXXXXX", path[100], expected[100];
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/s.yaml", folder);
+    FILE *file = fopen(path, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs("network: {layout: file, file: nodes.csv}\n", file);
+    fclose(file);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &scenario, error, sizeof error), error);
+    snprintf(expected, sizeof expected, "%s/nodes.csv", folder);
+    TEST_ASSERT_EQUAL_STRING(expected, scenario.network.file);
+    remove(path);
+    remove(folder);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(every_default_is_inside_its_range_and_every_key_documented_once);
+    RUN_TEST(a_file_sets_what_it_names_and_leaves_the_rest);
+    RUN_TEST(a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation);
+    RUN_TEST(set_refuses_what_a_file_may_not_hold_and_changes_nothing_then);
+    RUN_TEST(keys_that_contradict_each_other_are_refused);
+    RUN_TEST(the_scenarios_that_come_along_are_sound);
+    RUN_TEST(a_deployment_file_is_found_beside_its_scenario);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}
