@@ -38,15 +38,16 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
     bus->failed = bus->failed || !sound;
 }
 
-/* Encode a message of a generated type and publish it. Names are short and all other fields fixed, so 1024 bytes hold any. */
-#define PUBLISH(bus, channel, type, message)                                                                           \
+/* Encode a message of a generated type and publish it at `at_s`. Names are short and all other fields fixed, so 1024
+ * bytes hold any. */
+#define PUBLISH(bus, channel, type, message, at_s)                                                                     \
     do {                                                                                                               \
         uint8_t encoded[1024];                                                                                         \
         const int encoded_length = type##_encode(encoded, 0, sizeof encoded, &(message));                              \
         if (encoded_length < 0) {                                                                                      \
             (bus)->failed = true;                                                                                      \
         } else {                                                                                                       \
-            publish(bus, channel, (message).time_s, encoded, encoded_length);                                          \
+            publish(bus, channel, at_s, encoded, encoded_length);                                                      \
         }                                                                                                              \
     } while (0)
 
@@ -84,7 +85,7 @@ static void on_node(void *context, mh_node_id id, const struct mh_place *place)
                                       .x_m = place->x_mm * 1e-3,
                                       .y_m = place->y_mm * 1e-3,
                                       .z_m = place->z_mm * 1e-3};
-    PUBLISH(bus, BUS_NODE, motehound_node_t, message);
+    PUBLISH(bus, BUS_NODE, motehound_node_t, message, message.time_s);
 }
 
 static void on_truth(void *context, const struct truth *truth)
@@ -92,7 +93,7 @@ static void on_truth(void *context, const struct truth *truth)
     struct bus *bus = context;
     const motehound_truth_t message = {
         .time_s = truth->time_s, .run = bus->run, .present = truth->present, .x_m = truth->x_m, .y_m = truth->y_m};
-    PUBLISH(bus, BUS_TRUTH, motehound_truth_t, message);
+    PUBLISH(bus, BUS_TRUTH, motehound_truth_t, message, message.time_s);
 }
 
 static void on_frame(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
@@ -109,7 +110,7 @@ static void on_frame(void *context, double time_s, mh_node_id sender, mh_node_id
                                  .destination = (int32_t)destination,
                                  .length = (int16_t)length};
     memcpy(message.data, bytes, length);
-    PUBLISH(bus, BUS_FRAME, motehound_frame_t, message);
+    PUBLISH(bus, BUS_FRAME, motehound_frame_t, message, message.time_s);
 }
 
 static void on_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
@@ -118,7 +119,7 @@ static void on_estimate(void *context, double time_s, const struct mh_estimate *
     struct bus *bus = context;
     const double origin_x = estimate->origin.x_mm * 1e-3, origin_y = estimate->origin.y_mm * 1e-3;
     const motehound_track_t message = {
-        .time_s = time_s,
+        .time_s = at_time->time_s,
         .run = bus->run,
         .target = estimate->target,
         .x_m = origin_x + (double)estimate->position.x,
@@ -130,17 +131,17 @@ static void on_estimate(void *context, double time_s, const struct mh_estimate *
         .cov_yy_m2 = (double)estimate->covariance.yy,
         .raw_x_m = origin_x + (double)estimate->raw.x,
         .raw_y_m = origin_y + (double)estimate->raw.y,
-        .arrival_s = time_s - (double)estimate->age,
+        .arrival_s = at_arrival->time_s,
         .measurements = estimate->measurements,
         .flags = estimate->flags,
-        .true_known = at_time != NULL && at_time->present,
-        .true_x_m = at_time != NULL ? at_time->x_m : 0,
-        .true_y_m = at_time != NULL ? at_time->y_m : 0,
-        .arrival_known = at_arrival != NULL && at_arrival->present,
-        .arrival_x_m = at_arrival != NULL ? at_arrival->x_m : 0,
-        .arrival_y_m = at_arrival != NULL ? at_arrival->y_m : 0,
+        .true_known = at_time->present,
+        .true_x_m = at_time->x_m,
+        .true_y_m = at_time->y_m,
+        .arrival_known = at_arrival->present,
+        .arrival_x_m = at_arrival->x_m,
+        .arrival_y_m = at_arrival->y_m,
     };
-    PUBLISH(bus, BUS_TRACK, motehound_track_t, message);
+    PUBLISH(bus, BUS_TRACK, motehound_track_t, message, time_s);
 }
 
 struct observer bus_observer(struct bus *bus)
@@ -157,9 +158,12 @@ struct observer bus_observer(struct bus *bus)
 
 void bus_begin(struct bus *bus, uint64_t seed, const char *scenario, const char *version)
 {
-    const motehound_run_begin_t message = {
-        .run = bus->run, .seed = (int64_t)seed, .scenario = (char *)scenario, .version = (char *)version};
-    PUBLISH(bus, BUS_RUN_BEGIN, motehound_run_begin_t, message);
+    const motehound_run_begin_t message = {.time_s = bus->time_s,
+                                           .run = bus->run,
+                                           .seed = (int64_t)seed,
+                                           .scenario = (char *)scenario,
+                                           .version = (char *)version};
+    PUBLISH(bus, BUS_RUN_BEGIN, motehound_run_begin_t, message, message.time_s);
 }
 
 void bus_end(struct bus *bus, const struct simulation_counters *counters)
@@ -182,7 +186,7 @@ void bus_end(struct bus *bus, const struct simulation_counters *counters)
         .measurements_late = counters->head.late,
         .measurements_overflowed = counters->head.overflowed,
     };
-    PUBLISH(bus, BUS_RUN_END, motehound_run_end_t, message);
+    PUBLISH(bus, BUS_RUN_END, motehound_run_end_t, message, message.time_s);
 }
 
 int bus_outside(const char *url, lcm_t **outside, char *error, size_t error_size)

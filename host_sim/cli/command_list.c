@@ -3,6 +3,7 @@
 #include "cli/options.h"
 #include "scenario/folder.h"
 #include "scenario/keys.h"
+#include "trackers.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -74,8 +75,9 @@ int command_list(struct command *command)
         puts("  none found: set MOTEHOUND_SCENARIOS to a folder of .yaml files");
     }
     puts("trackers");
-    puts("  diffusion      sliding window over the path of a diffusing source; the default");
-    puts("  luo            Luo, Chai and Yang: bounded least squares and a Sage-Husa filter");
-    puts("  range          constant velocity from ranges to known places");
+    const char *name, *meaning;
+    for (size_t i = 0; tracker_describe(i, &name, &meaning); i++) {
+        printf("  %-14s %s\n", name, meaning);
+    }
     return 0;
 }

@@ -28,7 +28,7 @@ const struct scenario_key scenario_keys[] = {
     {"network.file", KEY_TEXT, AT(network.file), "", 0, 4000, NULL, "nodes.csv of layout file; in a file relative to it"},
     {"network.sink_x_m", KEY_NUMBER, AT(network.sink_x_m), "40", -1e5, 1e5, NULL, "where the head stands"},
     {"network.sink_y_m", KEY_NUMBER, AT(network.sink_y_m), "40", -1e5, 1e5, NULL, ""},
-    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection", "how measurements reach the head"},
+    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection|direct", "how measurements reach the head"},
     {"sensor.interval_s", KEY_NUMBER, AT(sensor.interval_s), "1", 0.01, 3600, NULL, "between samples; in a replay the recording's own unless set"},
     {"sensor.relative_noise", KEY_NUMBER, AT(sensor.relative_noise), "0", 0, 1, NULL, "standard deviation as a share of the reading"},
     {"sensor.additive_noise", KEY_NUMBER, AT(sensor.additive_noise), "0", 0, 1000, NULL, "standard deviation, g/m2"},

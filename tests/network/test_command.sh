@@ -1,0 +1,129 @@
+#!/bin/bash
+. "$(dirname "$0")/common.sh"
+small=(--set tracker.name=luo --set network.nodes=300 --set source.speed_mps=4)
+
+# scenarios
+accepted "$MOTEHOUND" list
+grep -q luo_exp4 out.txt || complain "list: no luo_exp4"
+accepted "$MOTEHOUND" list --keys
+grep -q '^source.speed_mps .*a number 0.01 to 100' out.txt || complain "list --keys: no source.speed_mps"
+accepted "$MOTEHOUND" --version
+accepted "$MOTEHOUND" --help
+for command in list run replay; do accepted "$MOTEHOUND" $command --help; done
+
+# words
+refused 'expected list, run or replay' "$MOTEHOUND"
+refused "expected list, run or replay, found 'walk'" "$MOTEHOUND" walk
+refused "unknown option '--run'" "$MOTEHOUND" run luo_exp1 --run 3
+refused 'expected a scenario, found nothing' "$MOTEHOUND" run
+refused "found 'luo_exp2' too" "$MOTEHOUND" run luo_exp1 luo_exp2
+refused "--runs: expected a whole number 1 to 1000000, found '0'" "$MOTEHOUND" run luo_exp1 --runs 0
+refused "--jobs: expected a whole number .*, found '-1'" "$MOTEHOUND" run luo_exp1 --jobs -1
+refused "--seed: expected a whole number .*, found '1.5'" "$MOTEHOUND" run luo_exp1 --seed=1.5
+refused '--out: expected a value' "$MOTEHOUND" run luo_exp1 --out
+refused '--seed: expected once' "$MOTEHOUND" run luo_exp1 --seed 1 --seed 2
+refused '--set speed: expected key=value' "$MOTEHOUND" run luo_exp1 --set speed
+refused '--bus nowhere://: expected a URL' "$MOTEHOUND" run luo_exp1 --bus nowhere://
+nothing out/luo_exp1
+
+# bad scenarios
+refused 'luo_exp9: expected a scenario.s file or a name of .motehound list., found neither' "$MOTEHOUND" run luo_exp9
+refused '^none.yaml: expected a scenario' "$MOTEHOUND" run none.yaml
+printf 'source:\n  sped_mps: 1\n' >key.yaml
+refused '^key.yaml:2: source.sped_mps: unknown key.*nearest is source.speed_mps' "$MOTEHOUND" run key.yaml
+printf 'source:\n  speed_mps: fast\n' >type.yaml
+refused "^type.yaml:2: source.speed_mps: expected a number 0.01 to 100, found 'fast'" "$MOTEHOUND" run type.yaml
+printf 'sensor: {loss: 1.5}\n' >range.yaml
+refused "^range.yaml:1: sensor.loss: expected a number 0 to 1, found '1.5'" "$MOTEHOUND" run range.yaml
+printf 'source: [\n' >broken.yaml
+refused '^broken.yaml:[12]: ' "$MOTEHOUND" run broken.yaml
+refused "^--set network.nodes: expected a whole number 4 to 1000000, found '3'" "$MOTEHOUND" run luo_exp1 --set network.nodes=3
+refused '^--set network.node: unknown key.*network.nodes' "$MOTEHOUND" run luo_exp1 --set network.node=30
+refused '^.*luo_exp1.yaml: sensor.outage_s: expected an end within the run' "$MOTEHOUND" run luo_exp1 --set sensor.outage_s=500
+refused 'sweep: expected a key and values' "$MOTEHOUND" run luo_exp1 --sweep
+nothing out/key
+nothing out/luo_exp1
+
+# bad recordings
+printf 'node,x_m,y_m\n0,0,0\n1,10,0\n2,0,10\n3,10,10\n' >nodes.csv
+printf 'node,x_m,y_m\n0,0,0\n1,10,0\n2,0,10\n' >three.csv
+readings() { { echo time_s,node,value; printf '%s\n' "$@"; } >readings.csv; }
+replay=("$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv --tracker luo --out replayed)
+readings 0,0,1 0,1,nan
+refused "^readings.csv:3: value: expected a number .*, found 'nan'" "${replay[@]}"
+readings 0,0,1 0,9,1
+refused '^readings.csv:3: node: expected one of the 4 nodes .*, found 9' "${replay[@]}"
+readings 1,0,1 0.5,1,1
+refused '^readings.csv:3: time_s: expected at least 1, .*found 0.5' "${replay[@]}"
+readings 0,0,1 1,1,1
+refused 'sensor.interval_s: expected a number' "${replay[@]}"
+readings 0,0,1 1,0,1
+refused '^three.csv: node: expected at least 4 nodes, found 3' "$MOTEHOUND" replay --nodes three.csv --readings readings.csv --tracker luo
+refused '^none.csv: cannot read' "$MOTEHOUND" replay --nodes none.csv --readings readings.csv --tracker luo
+refused 'expected --readings FILE' "$MOTEHOUND" replay --nodes nodes.csv --tracker luo
+refused 'expected --tracker NAME' "$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv
+refused "^--tracker: tracker.name: expected one of .*, found 'kalman'" "$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv --tracker kalman
+nothing replayed
+
+# a replay without a truth has no errors; with one it has
+for t in 0 1 2 3 4 5 6 7 8 9; do for n in 0 1 2 3; do echo $t,$n,7; done; done >rows.txt
+mapfile -t rows <rows.txt
+readings "${rows[@]}"
+printf 'time_s,x_m,y_m\n0,5,5\n9,5,5\n' >truth.csv
+ranged=("$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv --tracker range)
+accepted "${ranged[@]}" --out replayed
+grep -q position_rmse_m replayed/summary.json && complain "errors without a truth"
+grep -q tracked_share replayed/summary.json && complain "tracked share without a truth"
+accepted "${ranged[@]}" --truth truth.csv --out replayed
+grep -q position_rmse_m replayed/summary.json || complain "no errors with a truth"
+[ "$(head -1 replayed/track.csv | cut -d, -f1-10)" = run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m ] ||
+    complain "columns of track.csv"
+
+# the same bytes whatever the jobs, and for the same seeds whatever the runs before
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out one
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out two --jobs 2
+diff -r one two >/dev/null || complain "--jobs 2 gives other bytes"
+[ "$(ls one)" = "$(printf 'events.lcm\nnodes.csv\nruns.csv\nsummary.json\ntrack.csv')" ] || complain "files: $(ls one)"
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --seed 10 --out three
+[ "$(sed -n 5p one/runs.csv | cut -d, -f2-)" = "$(sed -n 2p three/runs.csv | cut -d, -f2-)" ] || complain "run 3 of seed 7 is not run 0 of seed 10"
+[ "$(head -1 one/runs.csv | cut -d, -f1,2)" = run,seed ] || complain "columns of runs.csv"
+[ "$(cut -d, -f1 one/runs.csv | tr '\n' ' ')" = "run 0 1 2 3 4 " ] || complain "rows of runs.csv"
+grep -iq nan one/*.json one/*.csv && complain "NaN in a file"
+
+# an earlier result is replaced, what else is in the folder stays
+echo mine >one/notes.txt
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --seed 10 --set sensor.relative_noise=0.05 --out one/
+[ "$(cat one/notes.txt)" = mine ] || complain "notes.txt is gone"
+[ ! -e one/events.lcm ] || complain "events.lcm of the run before is still there"
+diff one/summary.json three/summary.json >/dev/null || complain "summary.json was not replaced"
+nothing one/other
+
+# by default into out/NAME, and a sweep into a folder a value
+accepted "$MOTEHOUND" run luo_exp4 --set tracker.name=luo --set source.speed_mps=8 --set sweep.values=100,200 --sweep
+[ "$(ls out/luo_exp4)" = "$(printf '100\n200')" ] || complain "folders of the sweep: $(ls out/luo_exp4)"
+[ "$(wc -l <out/luo_exp4/200/nodes.csv)" -gt 200 ] || complain "nodes of the sweep"
+refused 'sweep: network.nodes: expected a whole number' "$MOTEHOUND" run luo_exp4 --set sweep.values=100,two --sweep --out swept
+nothing swept
+
+# a folder that cannot be written is refused before anything is simulated
+echo file >plain
+began=$SECONDS
+refused '^plain: cannot write into this folder: Not a directory' "$MOTEHOUND" run luo_exp1 --runs 100000 --out plain
+refused '^plain/deeper: cannot write into this folder: ' "$MOTEHOUND" run luo_exp1 --runs 100000 --out plain/deeper
+refused '^/proc/motehound: cannot write into this folder: ' "$MOTEHOUND" run luo_exp1 --runs 100000 --out /proc/motehound
+[ $((SECONDS - began)) -lt 20 ] || complain "simulated before the folder was tried"
+
+# an interrupt in mid-run
+for signal in INT TERM; do
+    "$MOTEHOUND" run luo_exp1 --set tracker.name=luo --runs 100000 --log --jobs 2 --out stopped >out.txt 2>err.txt &
+    process=$!
+    for _ in $(seq 100); do [ -n "$(find . -maxdepth 1 -name '.stopped.partial*')" ] && break; sleep 0.1; done
+    sleep 0.3
+    kill -$signal $process
+    wait $process
+    status=$?
+    [ $status -eq 1 ] || complain "status $status after SIG$signal"
+    [ "$(cat err.txt)" = "motehound: interrupted, nothing was written to stopped" ] || complain "after SIG$signal: $(cat err.txt)"
+    nothing stopped
+done
+conclude
