@@ -49,9 +49,9 @@ struct schema {
 static cyaml_schema_field_t field_of(size_t index, const char *name)
 {
     const cyaml_schema_field_t points = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
-                                                             points, &point_schema, 0, CYAML_UNLIMITED);
+                                                             points, &point_schema, 1, CYAML_UNLIMITED);
     const cyaml_schema_field_t list = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
-                                                           list, &text_schema, 0, CYAML_UNLIMITED);
+                                                           list, &text_schema, 1, CYAML_UNLIMITED);
     cyaml_schema_field_t field =
         CYAML_FIELD_STRING_PTR("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw, values[0], 0, CYAML_UNLIMITED);
     if (scenario_keys[index].type == KEY_POINTS) {
@@ -188,8 +188,8 @@ static size_t line_of(const char *yaml, size_t length, const char *path, char *p
 }
 
 /* What libcyaml refused, in our words. */
-static int explain(const char *yaml, size_t length, const char *name, const struct complaint *complaint, char *error,
-                   size_t error_size)
+static int explain(const char *yaml, size_t length, const char *name, cyaml_err_t status,
+                   const struct complaint *complaint, char *error, size_t error_size)
 {
     const char *text = complaint->text;
     const char *line_text = strstr(text, "(line: ");
@@ -220,10 +220,14 @@ static int explain(const char *yaml, size_t length, const char *name, const stru
         }
         return fail(error, error_size, "%s%s%sexpected a key %s", place, path, after, word);
     }
+    if (strstr(text, "Insufficient entries") != NULL) {
+        return fail(error, error_size, "%s%s%sexpected at least one entry, found none", place, path, after);
+    }
     if (strstr(text, "already seen") != NULL) {
         return fail(error, error_size, "%s%s%sexpected once, found twice", place, path, after);
     }
-    return fail(error, error_size, "%s%s%s%.*s", place, path, after, (int)strcspn(text, "\n"), text);
+    return fail(error, error_size, "%s%s%s%s", place, path, after,
+                status == CYAML_OK ? "expected one document, found more" : cyaml_strerror(status));
 }
 
 /* The points as --set writes them. Returns NULL with one line in `error`. */
@@ -322,7 +326,7 @@ int scenario_parse(const char *yaml, size_t length, const char *name, struct sce
         cyaml_load_data((const uint8_t *)yaml, length, &config, &schema.root, (cyaml_data_t **)&raw, NULL);
     int result = 0;
     if (status != CYAML_OK || complaint.used > 0) {
-        result = explain(yaml, length, name, &complaint, error, error_size);
+        result = explain(yaml, length, name, status, &complaint, error, error_size);
     } else if (raw == NULL) {
         result = fail(error, error_size, "%s:1: expected keys of a scenario, found nothing", name);
     } else {

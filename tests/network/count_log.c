@@ -31,8 +31,7 @@ static int play(const char *path, long counts[CHANNELS + 1])
     if (lcm == NULL || lcm_subscribe(lcm, ".*", on_message, counts) == NULL) {
         return 1;
     }
-    while (lcm_handle(lcm) == 0) {
-    }
+    while (lcm_handle(lcm) == 0) {}
     lcm_destroy(lcm);
     return 0;
 }
