@@ -83,7 +83,7 @@ grep -q position_rmse_m replayed/summary.json || complain "no errors with a trut
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out one
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out two --jobs 2
 diff -r one two >/dev/null || complain "--jobs 2 gives other bytes"
-[ "$(ls one)" = "$(printf 'events.lcm\nnodes.csv\nruns.csv\nsummary.json\ntrack.csv')" ] || complain "files: $(ls one)"
+[ "$(ls one)" = "$(printf 'events.lcm\nnodes.csv\nruns.csv\nscenario.json\nsummary.json\ntrack.csv')" ] || complain "files: $(ls one)"
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --seed 10 --out three
 [ "$(sed -n 5p one/runs.csv | cut -d, -f2-)" = "$(sed -n 2p three/runs.csv | cut -d, -f2-)" ] || complain "run 3 of seed 7 is not run 0 of seed 10"
 [ "$(head -1 one/runs.csv | cut -d, -f1,2)" = run,seed ] || complain "columns of runs.csv"

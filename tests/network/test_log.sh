@@ -31,9 +31,9 @@ beside_logger() {
     unshare -rn sh -c '
         ip link set lo up && ip route add 224.0.0.0/4 dev lo || exit 1
         lcm-logger -q "$2" >/dev/null 2>&1 & logger=$!
-        sleep 0.7
+        for _ in $(seq 100); do [ -s "$2" ] && break; sleep 0.1; done # it hears the test message of its own LCM
         eval "$1"; status=$?
-        sleep 0.5
+        sleep 1
         kill -INT $logger; wait $logger
         exit $status' sh "$1" "$2"
 }
