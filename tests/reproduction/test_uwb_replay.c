@@ -56,8 +56,8 @@ static bool load(void)
         }
         skip_line(file);
         struct reading *r = &readings[reading_count];
-        while (reading_count < READINGS_MAX && fscanf(file, "%*[^,],%lf,%d,%lf,%lf,%lf,%lf", &r->stamp_ns, &r->anchor, &r->x,
-                                                      &r->y, &r->z, &r->range_m) == 6) {
+        while (reading_count < READINGS_MAX && fscanf(file, "%*[^,],%lf,%d,%lf,%lf,%lf,%lf", &r->stamp_ns, &r->anchor,
+                                                      &r->x, &r->y, &r->z, &r->range_m) == 6) {
             skip_line(file);
             r = &readings[++reading_count];
         }
@@ -97,8 +97,10 @@ static void compare(const struct mh_estimate *e, double now_ns)
         return;
     }
     const double share = (now_ns - truth[row][0]) / (truth[row + 1][0] - truth[row][0]);
-    const double ex = (double)e->position.x + 0.001 * e->origin.x_mm - truth[row][1] - share * (truth[row + 1][1] - truth[row][1]);
-    const double ey = (double)e->position.y + 0.001 * e->origin.y_mm - truth[row][2] - share * (truth[row + 1][2] - truth[row][2]);
+    const double ex =
+        (double)e->position.x + 0.001 * e->origin.x_mm - truth[row][1] - share * (truth[row + 1][1] - truth[row][1]);
+    const double ey =
+        (double)e->position.y + 0.001 * e->origin.y_mm - truth[row][2] - share * (truth[row + 1][2] - truth[row][2]);
     const double xx = (double)e->covariance.xx, xy = (double)e->covariance.xy, yy = (double)e->covariance.yy;
     squares += ex * ex + ey * ey;
     nees[compared++] = (yy * ex * ex - 2 * xy * ex * ey + xx * ey * ey) / (xx * yy - xy * xy);
@@ -140,8 +142,9 @@ static void better_than_published(void)
     qsort(nees, (size_t)compared, sizeof *nees, by_value);
     const double rmse = sqrt(squares / compared), median = nees[compared / 2];
     char message[160];
-    snprintf(message, sizeof message, "rmse %.3f m over %d instants, %d without a position, %d starts, median NEES %.2f (1.39 is exact)",
-             rmse, compared, silent, started, median);
+    snprintf(message, sizeof message,
+             "rmse %.3f m over %d instants, %d without a position, %d starts, median NEES %.2f (1.39 is exact)", rmse,
+             compared, silent, started, median);
     TEST_MESSAGE(message);
     TEST_ASSERT_TRUE_MESSAGE(rmse < 1.0, message);
     TEST_ASSERT_TRUE_MESSAGE(median > 0.5 && median < 3, message);

@@ -19,9 +19,9 @@
 #define MH_PACKED(row, column) ((column) * ((column) + 1) / 2 + (row)) /* row <= column */
 
 struct mh_kalman {
-    uint8_t n;                                               /* states, 1 to MH_KALMAN_STATES_MAX */
-    mh_real x[MH_KALMAN_STATES_MAX];                         /* the estimate; its owner may read it, and shift it */
-    mh_real ud[MH_PACKED_SIZE(MH_KALMAN_STATES_MAX)];        /* packed: D on the diagonal, U above it */
+    uint8_t n;                                        /* states, 1 to MH_KALMAN_STATES_MAX */
+    mh_real x[MH_KALMAN_STATES_MAX];                  /* the estimate; its owner may read it, and shift it */
+    mh_real ud[MH_PACKED_SIZE(MH_KALMAN_STATES_MAX)]; /* packed: D on the diagonal, U above it */
 };
 
 /* Innovation gate: refuses a measurement whose innovation exceeds `sigmas` of its own standard deviations, but at most `patience` of

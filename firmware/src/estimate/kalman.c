@@ -112,8 +112,8 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
 }
 
 /* True if the measurement may be used; it may widen P (by a common factor on D, and so on g = D f) to make it so. */
-static bool gate_passes(struct mh_gate *gate, struct mh_kalman *filter, mh_real *g, mh_real *predicted, mh_real innovation,
-                        mh_real variance)
+static bool gate_passes(struct mh_gate *gate, struct mh_kalman *filter, mh_real *g, mh_real *predicted,
+                        mh_real innovation, mh_real variance)
 {
     const mh_real wanted = innovation * innovation / (gate->sigmas * gate->sigmas);
     if (wanted <= *predicted + variance) {

@@ -6,8 +6,8 @@
 #define LOST_TICKS (10 * (int32_t)MH_TICKS_PER_S)
 #define SPEED_BUILD_UP_S 5.0f /* a target's speed is what its acceleration builds up in this time */
 #define GATE_SIGMAS 3.0f
-#define GATE_PATIENCE 10    /* ranges */
-#define RESTART_PATIENCE 5  /* instants */
+#define GATE_PATIENCE 10   /* ranges */
+#define RESTART_PATIENCE 5 /* instants */
 
 void mh_range_config_default(struct mh_range_config *config)
 {
@@ -55,7 +55,7 @@ static uint16_t start(struct mh_range *range, const struct mh_measurement *measu
     }
     const mh_real speed_sd = SPEED_BUILD_UP_S * range->config.acceleration_sd_mps2;
     const mh_real x[4] = {fix.position.x, fix.position.y, 0, 0};
-    const mh_real P[10] = {fix.covariance.xx, fix.covariance.xy, fix.covariance.yy, 0, 0, speed_sd * speed_sd, 0, 0, 0,
+    const mh_real P[10] = {fix.covariance.xx,  fix.covariance.xy, fix.covariance.yy, 0, 0, speed_sd * speed_sd, 0, 0, 0,
                            speed_sd * speed_sd};
     if (mh_kalman_init(&range->filter, 4, x, P) != MH_OK) {
         return 0;

@@ -7,8 +7,11 @@
 void setUp(void) {}
 void tearDown(void) {}
 
-static const struct mh_place yard[5] = {
-    {1000000, 2000000, 2000}, {1010000, 2000000, 1000}, {1010000, 2010000, 3000}, {1000000, 2010000, 0}, {1005000, 2004000, 500}};
+static const struct mh_place yard[5] = {{1000000, 2000000, 2000},
+                                        {1010000, 2000000, 1000},
+                                        {1010000, 2010000, 3000},
+                                        {1000000, 2010000, 0},
+                                        {1005000, 2004000, 500}};
 
 /* the exact ranges from `anchors` to (x, y) m from the first one, at 1 m above ground */
 static void range_all(struct mh_measurement *out, const struct mh_place *anchors, size_t count, mh_real x, mh_real y)

@@ -9,8 +9,10 @@ void tearDown(void) {}
 
 enum { ANCHORS = 4, INTERVAL = 100 };
 
-static const struct mh_place anchors[ANCHORS] = {
-    {-500000000, 700000000, 2500}, {-499980000, 700000000, 500}, {-499980000, 700020000, 2500}, {-500000000, 700020000, 500}};
+static const struct mh_place anchors[ANCHORS] = {{-500000000, 700000000, 2500},
+                                                 {-499980000, 700000000, 500},
+                                                 {-499980000, 700020000, 2500},
+                                                 {-500000000, 700020000, 500}};
 
 static struct mh_range state;
 static struct mh_measurement set[ANCHORS];
@@ -181,7 +183,7 @@ static void old_and_early_ranges_are_left_out(void)
     begin(0.1f);
     mh_tick now = rest(0, 1000, 5, 6);
     range_all(now + INTERVAL, 5, 6);
-    set[0].time = now - 50;       /* older than the newest taken */
+    set[0].time = now - 50;           /* older than the newest taken */
     set[3].time = now + INTERVAL + 1; /* after the instant */
     TEST_ASSERT_EQUAL_INT(MH_OK, step(now + INTERVAL, ANCHORS));
     TEST_ASSERT_EQUAL_UINT16(2, estimate.measurements);
