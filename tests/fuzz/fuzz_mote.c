@@ -1,0 +1,204 @@
+/* A live mote under hostile frames, readings and clocks.
+ *
+ * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node. Then come events, each an opcode
+ * and its operands; see next_event(). Whatever happens: what the mote transmits are frames that it would take itself,
+ * and what it reports are finite numbers. */
+#include "fuzz.h"
+#include "motehound/collection.h"
+#include "motehound/diffusion.h"
+#include "motehound/luo.h"
+#include "motehound/mote.h"
+#include "motehound/range.h"
+
+#include <string.h>
+
+enum { EVENTS_MAX = 300, ALARMS_MAX = 20, INTERVAL = 1000 };
+
+union tracker_state {
+    struct mh_luo luo;
+    struct mh_diffusion diffusion;
+    struct mh_range range;
+};
+
+struct world {
+    struct mh_mote mote;
+    mh_tick now, alarm;
+    int alarm_set;
+};
+
+struct input {
+    const uint8_t *data;
+    size_t left;
+};
+
+static void transmit(void *context, mh_node_id destination, const uint8_t *frame, size_t length)
+{
+    (void)context;
+    (void)destination;
+    struct mh_message message;
+    require(length <= MH_FRAME_MAX && mh_wire_decode(frame, length, &message) == MH_OK);
+}
+
+static void set_alarm(void *context, mh_tick time)
+{
+    struct world *world = context;
+    world->alarm = time;
+    world->alarm_set = 1;
+}
+
+static void report(void *context, const struct mh_estimate *estimate)
+{
+    (void)context;
+    require(mh_finite(estimate->position.x) && mh_finite(estimate->position.y));
+    require(mh_finite(estimate->velocity.x) && mh_finite(estimate->velocity.y));
+    require(estimate->covariance.xx >= 0 && estimate->covariance.yy >= 0 && mh_finite(estimate->covariance.xy));
+}
+
+static uint8_t byte(struct input *input)
+{
+    if (input->left == 0) {
+        return 0;
+    }
+    input->left--;
+    return *input->data++;
+}
+
+static size_t bytes(struct input *input, uint8_t *to, size_t count)
+{
+    count = count < input->left ? count : input->left;
+    memcpy(to, input->data, count);
+    input->data += count;
+    input->left -= count;
+    return count;
+}
+
+static void ring(struct world *world)
+{
+    for (int i = 0; i < ALARMS_MAX && world->alarm_set && !mh_tick_before(world->now, world->alarm); i++) {
+        world->alarm_set = 0;
+        mh_mote_alarm(&world->mote, world->now);
+    }
+}
+
+/* Any bytes as a frame. */
+static void raw_frame(struct world *world, struct input *input)
+{
+    uint8_t frame[256];
+    const size_t length = bytes(input, frame, byte(input));
+    mh_mote_frame(&world->mote, world->now, frame, length);
+}
+
+/* A frame with the right fingerprint and check sum, and any bytes in its fields. */
+static void sound_frame(struct world *world, struct input *input)
+{
+    const struct mh_message message = {.kind = (enum mh_message_kind)(byte(input) % MH_MESSAGE_KINDS)};
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    mh_wire_encode(&message, frame, &length);
+    bytes(input, frame + 8, length - 10);
+    const uint16_t fcs = mh_wire_fcs(frame, length - 2);
+    frame[length - 2] = (uint8_t)fcs;
+    frame[length - 1] = (uint8_t)(fcs >> 8);
+    mh_mote_frame(&world->mote, world->now, frame, length);
+}
+
+/* A measurement of now, so that the head has work: places within 16 m in steps of half a metre, increments of up to 8 g/m2. */
+static void fresh_report(struct world *world, struct input *input)
+{
+    const struct mh_measurement measurement = {
+        .node = byte(input),
+        .place = {(byte(input) % 64 - 32) * 500, (byte(input) % 64 - 32) * 500, byte(input) * 10},
+        .time = world->now - world->now % INTERVAL,
+        .value = (mh_q20)byte(input) << 17,
+        .increment = (mh_q20)byte(input) << 15,
+        .flags = MH_MEASUREMENT_HAS_INCREMENT,
+    };
+    struct mh_message message = {.kind = MH_MESSAGE_REPORT};
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    mh_report_from_measurement(&measurement, &message.as.report);
+    mh_wire_encode(&message, frame, &length);
+    mh_mote_frame(&world->mote, world->now, frame, length);
+}
+
+static void reading(struct world *world, struct input *input)
+{
+    const int32_t high = byte(input), low = byte(input);
+    const struct mh_reading r = {world->now - byte(input), high * 256 + low, byte(input) % 2};
+    mh_mote_reading(&world->mote, world->now, &r);
+}
+
+static void next_event(struct world *world, struct input *input)
+{
+    switch (byte(input) % 6) {
+    case 0:
+        raw_frame(world, input);
+        break;
+    case 1:
+        sound_frame(world, input);
+        break;
+    case 2:
+        fresh_report(world, input);
+        break;
+    case 3:
+        reading(world, input);
+        break;
+    case 4:
+        world->now += 16u * byte(input);
+        break;
+    default:
+        world->now += (mh_tick)byte(input) << byte(input) % 25;
+        break;
+    }
+    ring(world);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const struct mh_tracker *const trackers[4] = {&mh_tracker_luo, &mh_tracker_diffusion, &mh_tracker_range,
+                                                         &mh_tracker_diffusion};
+    static const struct mh_port port = {.transmit = transmit, .set_alarm = set_alarm, .report = report};
+    static const struct mh_sensor_config sensor = {
+        .q20_per_count = 1 << 8, .counts_max = 65535, .interval = INTERVAL, .threshold = MH_Q20(0.2f)};
+    struct input input = {data, size};
+    const uint8_t choice = byte(&input);
+    const struct mh_tracker *tracker = trackers[choice & 3];
+    union {
+        struct mh_luo_config luo;
+        struct mh_diffusion_config diffusion;
+        struct mh_range_config range;
+    } tracker_config;
+    mh_luo_config_default(&tracker_config.luo);
+    if (tracker == &mh_tracker_diffusion) {
+        mh_diffusion_config_default(&tracker_config.diffusion);
+    } else if (tracker == &mh_tracker_range) {
+        mh_range_config_default(&tracker_config.range);
+    }
+    static union tracker_state tracker_state;
+    static struct mh_head head;
+    struct mh_collection collection;
+    struct mh_collection_config protocol_config;
+    mh_collection_config_default(&protocol_config);
+    const struct mh_head_config head_config = {
+        .tracker = tracker,
+        .tracker_config = &tracker_config,
+        .tracker_state = &tracker_state,
+        .interval = INTERVAL,
+        .window = 900,
+    };
+    const struct mh_mote_config config = {
+        .id = 7,
+        .sensor = &sensor,
+        .head = choice & 4 ? NULL : &head_config,
+        .protocol = &mh_protocol_collection,
+        .protocol_config = &protocol_config,
+        .protocol_state = &collection,
+        .head_state = &head,
+    };
+    struct world world = {.now = choice & 8 ? 0xFFFFE000u : 5000}; /* also across the wrap of the ticks */
+    require(mh_mote_init(&world.mote, &config, &port, &world, world.now) == MH_OK);
+    for (int i = 0; i < EVENTS_MAX && input.left > 0; i++) {
+        next_event(&world, &input);
+    }
+    return 0;
+}

@@ -1,0 +1,84 @@
+/* make_seeds WIRE_FOLDER MOTE_FOLDER: good inputs of fuzz_wire.c and fuzz_mote.c, for the fuzzer to start from. */
+#include "motehound/wire.h"
+
+#include <stdio.h>
+
+static int save(const char *folder, const char *name, const uint8_t *bytes, size_t length)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "wb");
+    if (file == NULL || fwrite(bytes, 1, length, file) != length || fclose(file) != 0) {
+        perror(path);
+        return -1;
+    }
+    return 0;
+}
+
+static int save_frame(const char *folder, const char *name, const struct mh_message *message)
+{
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    return mh_wire_encode(message, frame, &length) == MH_OK ? save(folder, name, frame, length) : -1;
+}
+
+/* Every second six reports around a source that walks, then the time goes on: a track. */
+static int save_track(const char *folder, const char *name, uint8_t choice)
+{
+    uint8_t input[2048] = {choice};
+    size_t length = 1;
+    for (int second = 0; second < 12; second++) {
+        for (int node = 0; node < 6; node++) {
+            const uint8_t event[] = {2,
+                                     (uint8_t)(second * 6 + node),
+                                     (uint8_t)(28 + 2 * second + node % 3 * 4),
+                                     (uint8_t)(30 + node / 3 * 5),
+                                     0,
+                                     (uint8_t)(60 + node * 7),
+                                     (uint8_t)(100 + node * 20)};
+            for (size_t i = 0; i < sizeof event; i++) {
+                input[length++] = event[i];
+            }
+        }
+        input[length++] = 4;
+        input[length++] = 63; /* 1,008 ms */
+    }
+    return save(folder, name, input, length);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 3) {
+        return 2;
+    }
+    const struct mh_message beacon = {.kind = MH_MESSAGE_BEACON,
+                                      .as.beacon = {.sender = 3, .sink = 1, .round = 12, .hops = 2, .tracking = 1}};
+    const struct mh_message report = {.kind = MH_MESSAGE_REPORT,
+                                      .as.report = {.sender = 4,
+                                                    .origin = 5,
+                                                    .time_ms = 12000,
+                                                    .x_mm = 1000,
+                                                    .y_mm = -2000,
+                                                    .value_q20 = 1 << 20,
+                                                    .increment_q20 = 1 << 19,
+                                                    .flags = 1,
+                                                    .hops = 3}};
+    const struct mh_message request = {.kind = MH_MESSAGE_REQUEST,
+                                       .as.request = {.sender = 1,
+                                                      .origin = 1,
+                                                      .time_ms = 13000,
+                                                      .x_mm = 5000,
+                                                      .y_mm = 6000,
+                                                      .radius_mm = 8000,
+                                                      .sender_x_mm = -100,
+                                                      .sender_y_mm = 200}};
+    const char *wire = argv[1], *mote = argv[2];
+    int failed = save_frame(wire, "beacon", &beacon) || save_frame(wire, "report", &report) ||
+                 save_frame(wire, "request", &request);
+    for (uint8_t choice = 0; choice < 12; choice++) {
+        char name[20];
+        snprintf(name, sizeof name, "track%u", choice);
+        failed = failed || save_track(mote, name, choice);
+    }
+    return failed ? 1 : 0;
+}
