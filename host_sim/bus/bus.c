@@ -14,7 +14,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+/* A simulation is a thousand times faster than what it simulates; UDP's buffers hold some hundred messages. */
+#define OUTSIDE_PAUSE_NS 50000
 
 static void publish(struct bus *bus, const char *channel, double time_s, void *bytes, int length)
 {
@@ -31,9 +35,11 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
         };
         sound = lcm_eventlog_write_event(bus->log, &event) == 0;
     }
-    /* a network that drops messages is no failure of the run */
     if (bus->outside != NULL) {
+        /* a network that drops messages is no failure of the run, but listeners shall have time to take them */
+        const struct timespec pause = {.tv_nsec = OUTSIDE_PAUSE_NS};
         lcm_publish(bus->outside, channel, bytes, (unsigned)length);
+        nanosleep(&pause, NULL);
     }
     bus->failed = bus->failed || !sound;
 }

@@ -31,7 +31,8 @@ beside_logger() {
     unshare -rn sh -c '
         ip link set lo up && ip route add 224.0.0.0/4 dev lo || exit 1
         lcm-logger -q "$2" >/dev/null 2>&1 & logger=$!
-        for _ in $(seq 100); do [ -s "$2" ] && break; sleep 0.1; done # it hears the test message of its own LCM
+        for _ in $(seq 100); do grep -q :1DF3 /proc/self/net/udp && break; sleep 0.1; done # it hears port 7667
+        sleep 0.3
         eval "$1"; status=$?
         sleep 1
         kill -INT $logger; wait $logger

@@ -1,0 +1,236 @@
+#include "port.h"
+#include "record/output.h"
+#include "record/results.h"
+#include "unity.h"
+
+#include <dirent.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char base[64];
+static char error[1000];
+
+static const char *at(const char *name)
+{
+    static char path[300];
+    snprintf(path, sizeof path, "%s/%s", base, name);
+    return path;
+}
+
+/* Names in a folder that begin with `prefix`, "." and ".." apart. */
+static int entries(const char *folder, const char *prefix)
+{
+    int count = 0;
+    DIR *open_folder = opendir(folder);
+    for (const struct dirent *e; open_folder != NULL && (e = readdir(open_folder)) != NULL;) {
+        count += strcmp(e->d_name, ".") != 0 && strcmp(e->d_name, "..") != 0 &&
+                 strncmp(e->d_name, prefix, strlen(prefix)) == 0;
+    }
+    if (open_folder != NULL) {
+        closedir(open_folder);
+    }
+    return count;
+}
+
+static void put(const struct output *output, const char *name, const char *text)
+{
+    FILE *file = output_create(output, name, error, sizeof error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, error);
+    fputs(text, file);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, output_finish(file, name, error, sizeof error), error);
+}
+
+static void assert_file(const char *name, const char *text)
+{
+    char found[100] = "";
+    FILE *file = fopen(at(name), "r");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, name);
+    found[fread(found, 1, sizeof found - 1, file)] = '\0';
+    fclose(file);
+    TEST_ASSERT_EQUAL_STRING(text, found);
+}
+
+static void remove_tree(const char *path)
+{
+    char command[400];
+    snprintf(command, sizeof command, "rm -rf '%s'", path);
+    TEST_ASSERT_EQUAL_INT(0, system(command));
+}
+
+void setUp(void)
+{
+    snprintf(base, sizeof base, "/tmp/motehound-XXXXXX");
+    TEST_ASSERT_NOT_NULL(mkdtemp(base));
+}
+void tearDown(void) { remove_tree(base); }
+
+static void nothing_shows_before_the_commit_and_all_after(void)
+{
+    static const char *const names[] = {"runs.csv", "summary.json"};
+    struct output output;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, output_open(&output, at("deep/er/out/"), error, sizeof error), error);
+    put(&output, "runs.csv", "1");
+    put(&output, "summary.json", "2");
+    TEST_ASSERT_NOT_EQUAL(0, access(at("deep/er/out"), F_OK));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, output_commit(&output, names, 2, error, sizeof error), error);
+    assert_file("deep/er/out/runs.csv", "1");
+    assert_file("deep/er/out/summary.json", "2");
+    TEST_ASSERT_EQUAL_INT(1, entries(at("deep/er"), ""));
+}
+
+static void a_discarded_output_leaves_what_was_there(void)
+{
+    static const char *const names[] = {"runs.csv"};
+    struct output output;
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("out"), error, sizeof error));
+    put(&output, "runs.csv", "old");
+    TEST_ASSERT_EQUAL_INT(0, output_commit(&output, names, 1, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("out"), error, sizeof error));
+    put(&output, "runs.csv", "new");
+    output_discard(&output);
+    assert_file("out/runs.csv", "old");
+    TEST_ASSERT_EQUAL_INT(1, entries(base, ""));
+}
+
+static void a_commit_replaces_results_and_nothing_else(void)
+{
+    static const char *const before[] = {"runs.csv", "events.lcm", "summary.json"};
+    static const char *const after[] = {"runs.csv", "summary.json"};
+    struct output output;
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("out"), error, sizeof error));
+    for (size_t i = 0; i < 3; i++) {
+        put(&output, before[i], "old");
+    }
+    TEST_ASSERT_EQUAL_INT(0, output_commit(&output, before, 3, error, sizeof error));
+    FILE *mine = fopen(at("out/mine.txt"), "w");
+    fputs("mine", mine);
+    fclose(mine);
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("out"), error, sizeof error));
+    put(&output, "runs.csv", "new");
+    put(&output, "summary.json", "new");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, output_commit(&output, after, 2, error, sizeof error), error);
+    assert_file("out/runs.csv", "new");
+    assert_file("out/summary.json", "new");
+    assert_file("out/mine.txt", "mine");
+    TEST_ASSERT_EQUAL_INT(3, entries(at("out"), ""));
+    TEST_ASSERT_EQUAL_INT(1, entries(base, ""));
+}
+
+static void a_link_to_a_folder_and_the_working_folder_are_written_into(void)
+{
+    static const char *const names[] = {"runs.csv"};
+    char here[300];
+    struct output output;
+    TEST_ASSERT_EQUAL_INT(0, mkdir(at("real"), 0777));
+    TEST_ASSERT_EQUAL_INT(0, symlink("real", at("link")));
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("link"), error, sizeof error));
+    put(&output, "runs.csv", "1");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, output_commit(&output, names, 1, error, sizeof error), error);
+    assert_file("real/runs.csv", "1");
+    TEST_ASSERT_NOT_NULL(getcwd(here, sizeof here));
+    TEST_ASSERT_EQUAL_INT(0, chdir(at("real")));
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, ".", error, sizeof error));
+    put(&output, "runs.csv", "2");
+    const int status = output_commit(&output, names, 1, error, sizeof error);
+    TEST_ASSERT_EQUAL_INT(0, chdir(here));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, status, error);
+    assert_file("real/runs.csv", "2");
+    TEST_ASSERT_EQUAL_INT(1, entries(at("real"), ""));
+}
+
+static void a_folder_that_cannot_be_written_is_refused(void)
+{
+    struct output output;
+    fclose(fopen(at("file"), "w"));
+    TEST_ASSERT_EQUAL_INT(-1, output_open(&output, at("file"), error, sizeof error));
+    TEST_ASSERT_NOT_NULL(strstr(error, "file: cannot write into this folder: Not a directory"));
+    TEST_ASSERT_EQUAL_INT(-1, output_open(&output, at("file/out"), error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, output_open(&output, "", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(1, entries(base, ""));
+}
+
+/* A disk that is full, as Linux offers one. */
+static void a_full_disk_is_noticed(void)
+{
+    FILE *file = fopen("/dev/full", "w");
+    if (file == NULL) {
+        TEST_IGNORE_MESSAGE("no /dev/full");
+    }
+    fputs("x", file);
+    TEST_ASSERT_EQUAL_INT(-1, output_finish(file, "runs.csv", error, sizeof error));
+    TEST_ASSERT_EQUAL_STRING("runs.csv: cannot write: No space left on device", error);
+}
+
+/* Three runs whose only position errors are 1, 2 and 6 m, in one, two and three estimates. */
+static void the_summary_says_what_the_runs_say(void)
+{
+    static const double errors_m[] = {1, 2, 6};
+    struct scenario scenario;
+    struct results results;
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "metrics.skip_first", "0", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        0, results_open(&results, at("out"), "a \"scenario\"", NULL, 40, false, error, sizeof error), error);
+    for (int run = 0; run < 3; run++) {
+        motehound_track_t tracks[3];
+        memset(tracks, 0, sizeof tracks);
+        for (int i = 0; i <= run; i++) {
+            tracks[i] = (motehound_track_t){.time_s = i, .x_m = errors_m[run], .true_known = 1, .raw_y_m = 0.1};
+        }
+        const struct recorder recorder = {.tracks = tracks, .track_count = (size_t)run + 1, .samples = 4};
+        TEST_ASSERT_EQUAL_INT_MESSAGE(
+            0, results_add(&results, 40 + (uint64_t)run, &scenario, &recorder, error, sizeof error), error);
+    }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, results_commit(&results, "1.2.3", error, sizeof error), error);
+    scenario_free(&scenario);
+
+    json_error_t json_error;
+    json_t *summary = json_load_file(at("out/summary.json"), 0, &json_error);
+    TEST_ASSERT_NOT_NULL_MESSAGE(summary, json_error.text);
+    const char *name, *version;
+    int seed, runs, n;
+    double mean, sd, median, p95, share, pooled_rmse, pooled_median;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0,
+                                  json_unpack_ex(summary, &json_error, 0, "{s:s, s:s, s:i, s:i}", "scenario", &name,
+                                                 "version", &version, "seed", &seed, "runs", &runs),
+                                  json_error.text);
+    TEST_ASSERT_EQUAL_size_t(6, json_object_size(summary)); /* with metrics and pooled */
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0,
+                                  json_unpack_ex(summary, &json_error, 0, "{s:{s:F, s:F}}", "pooled", "position_rmse_m",
+                                                 &pooled_rmse, "position_median_m", &pooled_median),
+                                  json_error.text);
+    TEST_ASSERT_EQUAL_STRING("a \"scenario\"", name);
+    TEST_ASSERT_EQUAL_STRING("1.2.3", version);
+    TEST_ASSERT_TRUE(seed == 40 && runs == 3);
+    TEST_ASSERT_TRUE(fabs(pooled_rmse - sqrt((1 + 2 * 4 + 3 * 36) / 6.0)) < 1e-8 && fabs(pooled_median - 4) < 1e-8);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0,
+                                  json_unpack_ex(summary, &json_error, 0, "{s:{s:{s:F, s:F, s:F, s:F, s:i !}}}",
+                                                 "metrics", "position_rmse_m", "mean", &mean, "std", &sd, "median",
+                                                 &median, "p95", &p95, "n", &n),
+                                  json_error.text);
+    TEST_ASSERT_TRUE(fabs(mean - 3) < 1e-8 && fabs(sd - sqrt(7)) < 1e-8 && fabs(median - 2) < 1e-8 &&
+                     fabs(p95 - 5.6) < 1e-8 && n == 3);
+    TEST_ASSERT_EQUAL_INT(0, json_unpack(summary, "{s:{s:{s:F}}}", "metrics", "tracked_share", "mean", &share));
+    TEST_ASSERT_TRUE(fabs(share - 0.5) < 1e-8);
+    TEST_ASSERT_NULL(json_object_get(json_object_get(summary, "metrics"), "nees_median"));
+    json_decref(summary);
+    TEST_ASSERT_EQUAL_INT(4, entries(at("out"), ""));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(nothing_shows_before_the_commit_and_all_after);
+    RUN_TEST(a_discarded_output_leaves_what_was_there);
+    RUN_TEST(a_commit_replaces_results_and_nothing_else);
+    RUN_TEST(a_link_to_a_folder_and_the_working_folder_are_written_into);
+    RUN_TEST(a_folder_that_cannot_be_written_is_refused);
+    RUN_TEST(a_full_disk_is_noticed);
+    RUN_TEST(the_summary_says_what_the_runs_say);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}
