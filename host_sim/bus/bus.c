@@ -57,6 +57,16 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
         }                                                                                                              \
     } while (0)
 
+void bus_prepare(void)
+{
+    __motehound_frame_t_get_hash();
+    __motehound_node_t_get_hash();
+    __motehound_run_begin_t_get_hash();
+    __motehound_run_end_t_get_hash();
+    __motehound_track_t_get_hash();
+    __motehound_truth_t_get_hash();
+}
+
 int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, char *error, size_t error_size)
 {
     *bus = (struct bus){.lcm = lcm_create("memq://"), .outside = outside, .run = run};

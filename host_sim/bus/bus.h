@@ -1,8 +1,9 @@
 /* The bus of one run: what an observer of the simulation is told, as LCM messages (lcm_types/motehound_bus.lcm).
  *
- * Every message goes to the run's own in-memory LCM, to a log if there is one, and to an outside LCM if there is one. Subscribers
- * on the run's own LCM are called before the observing function returns, so a recorder sees everything, in order, whatever the
- * network outside does. Frames, and the nodes of runs after the first, are published only if there is a log or an outside. */
+ * Every message goes to the run's own in-memory LCM, to a log if there is one, and to an outside LCM if there is one.
+ * Subscribers on the run's own LCM are called before the observing function returns, so a recorder sees everything, in
+ * order, whatever the network outside does. Frames, and the nodes of runs after the first, are published only if there
+ * is a log or an outside. */
 #ifndef MOTEHOUND_SIM_BUS_H
 #define MOTEHOUND_SIM_BUS_H
 
@@ -26,6 +27,9 @@ struct bus {
     bool failed;   /* a message could not be made, delivered or logged */
 };
 
+/* Call once before there are threads: lcm-gen's code computes the fingerprint of a type at its first use, unguarded. */
+void bus_prepare(void);
+
 /* `log_path` and `outside` may be NULL. Returns 0, or -1 with one line in `error`. */
 int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, char *error, size_t error_size);
 
@@ -38,8 +42,9 @@ void bus_end(struct bus *bus, const struct simulation_counters *counters);
 /* Returns 0, or -1 with one line in `error` if any message was lost. */
 int bus_close(struct bus *bus, char *error, size_t error_size);
 
-/* An LCM on `url` for bus_open's `outside`; *outside is NULL for memq://. LCM's own lines about a URL that it cannot serve are kept from
- * standard error, so call it before there are threads. Returns 0, or -1 with one line in `error`. */
+/* An LCM on `url` for bus_open's `outside`; *outside is NULL for memq://. LCM's own lines about a URL that it cannot
+ * serve are kept from standard error, so call it before there are threads. Returns 0, or -1 with one line in `error`.
+ */
 int bus_outside(const char *url, lcm_t **outside, char *error, size_t error_size);
 
 #endif

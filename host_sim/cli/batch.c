@@ -131,6 +131,7 @@ int batch_execute(const struct batch *batch, struct results *results, char *erro
         free(threads);
         return fail(error, error_size, "--runs %u: no memory", batch->runs);
     }
+    bus_prepare();
     pthread_mutex_init(&work.mutex, NULL);
     pthread_cond_init(&work.changed, NULL);
     unsigned started = 0;

@@ -19,8 +19,8 @@ struct batch {
     void *progress_context;
 };
 
-/* Do all runs on `jobs` threads and add each to `results` in order. The bytes of the results do not depend on `jobs`. Returns 0, or -1
- * with one line in `error`. */
+/* Do all runs on `jobs` threads and add each to `results` in order. The bytes of the results do not depend on `jobs`.
+ * Returns 0, or -1 with one line in `error`. */
 int batch_execute(const struct batch *batch, struct results *results, char *error, size_t error_size);
 
 #endif

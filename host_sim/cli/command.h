@@ -1,4 +1,5 @@
-/* The commands of `motehound`. Each takes the words after its name and returns the exit status: 0, or 1 with one line in `error`. */
+/* The commands of `motehound`. Each takes the words after its name and returns the exit status: 0, or 1 with one line
+ * in `error`. */
 #ifndef MOTEHOUND_SIM_COMMAND_H
 #define MOTEHOUND_SIM_COMMAND_H
 
@@ -17,8 +18,8 @@ int command_list(struct command *command);
 int command_run(struct command *command);
 int command_replay(struct command *command);
 
-/* What run and replay have in common: a batch into folder `out`, with progress on a terminal, and a table of results on standard
- * output. `name` stands for the scenario. Returns as a command does. */
+/* What run and replay have in common: a batch into folder `out`, with progress on a terminal, and a table of results on
+ * standard output. `name` stands for the scenario. Returns as a command does. */
 struct session {
     struct batch batch;
     const char *name;

@@ -23,8 +23,8 @@ struct option_reader {
 
 enum option_kind { OPTION_END, OPTION_NAMED, OPTION_OPERAND, OPTION_ERROR };
 
-/* The next word: OPTION_NAMED with the rule's index in *rule and, where it takes one, its *value; OPTION_OPERAND with *value;
- * OPTION_ERROR with one line in `error`; OPTION_END. At most 64 rules. */
+/* The next word: OPTION_NAMED with the rule's index in *rule and, where it takes one, its *value; OPTION_OPERAND with
+ * *value; OPTION_ERROR with one line in `error`; OPTION_END. At most 64 rules. */
 enum option_kind option_next(struct option_reader *reader, size_t *rule, const char **value, char *error,
                              size_t error_size);
 

@@ -6,8 +6,8 @@
 #include "record/statistics.h"
 #include "scenario/scenario.h"
 
-/* The errors of the estimates of one run, or of many together, at which the source was present; the first metrics.skip_first
- * estimates of each target are left out. */
+/* The errors of the estimates of one run, or of many together, at which the source was present; the first
+ * metrics.skip_first estimates of each target are left out. */
 struct errors {
     struct samples position;     /* m, at the sampling instant */
     struct samples raw_position; /* m, before filtering */
@@ -60,9 +60,9 @@ void errors_free(struct errors *errors);
 /* The first METRIC_ERRORS_COUNT metrics, from the errors alone. Puts the errors in ascending order. */
 void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT]);
 
-/* All metrics of a run. tracked_share: share of the sampling instants with the source present that gave a position. track_lost: 1 if the
- * error exceeded metrics.lost_m in metrics.lost_samples successive estimates of a target, else 0. Takes the run's errors as errors_of
- * gave them, and puts them in ascending order. */
+/* All metrics of a run. tracked_share: share of the sampling instants with the source present that gave a position.
+ * track_lost: 1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates of a target, else 0.
+ * Takes the run's errors as errors_of gave them, and puts them in ascending order. */
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT]);
 

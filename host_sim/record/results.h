@@ -1,12 +1,11 @@
-/* The files of one or many runs: summary.json, runs.csv, track.csv, nodes.csv, scenario.json and, with a log, events.lcm. Runs are added in their
- * order, whatever order they ended in, so the same runs give the same bytes.
+/* The files of one or many runs: summary.json, runs.csv, track.csv, nodes.csv, scenario.json and, with a log,
+ * events.lcm. Runs are added in their order, whatever order they ended in, so the same runs give the same bytes.
  *
- * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the "mean", "std" (divisor
- * n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics over all estimates of all runs
- * together.
- * track.csv: one row an estimate; sd_m is the standard deviation of one coordinate, sqrt((cov_xx + cov_yy) / 2). Fields that
- * do not apply are empty. nodes.csv: where the motes of the first run stand. scenario.json: the scenario as it was simulated; none
- * for a recording. */
+ * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the
+ * "mean", "std" (divisor n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics
+ * over all estimates of all runs together. track.csv: one row an estimate; sd_m is the standard deviation of one
+ * coordinate, sqrt((cov_xx + cov_yy) / 2). Fields that do not apply are empty. nodes.csv: where the motes of the first
+ * run stand. scenario.json: the scenario as it was simulated; none for a recording. */
 #ifndef MOTEHOUND_SIM_RESULTS_H
 #define MOTEHOUND_SIM_RESULTS_H
 
@@ -30,8 +29,8 @@ struct results {
     struct errors pooled;
 };
 
-/* Begin in folder `out`; `scenario` is the one that is simulated, or NULL for a recording. It and the name stay valid until
- * results_commit. Returns 0, or -1 with one line in `error` and nothing left behind. */
+/* Begin in folder `out`; `scenario` is the one that is simulated, or NULL for a recording. It and the name stay valid
+ * until results_commit. Returns 0, or -1 with one line in `error` and nothing left behind. */
 int results_open(struct results *results, const char *out, const char *scenario_name, const struct scenario *scenario,
                  uint64_t seed, bool log, char *error, size_t error_size);
 

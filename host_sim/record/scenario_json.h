@@ -6,8 +6,8 @@
 
 #include <jansson.h>
 
-/* {"name": ..., "source": {"path": "arcs", "points": [{"x_m", "y_m", "speed_factor"}], ...}, ...}; to be released with json_decref.
- * Returns NULL if there is no memory or a text is not UTF-8. */
+/* {"name": ..., "source": {"path": "arcs", "points": [{"x_m", "y_m", "speed_factor"}], ...}, ...}; to be released with
+ * json_decref. Returns NULL if there is no memory or a text is not UTF-8. */
 json_t *scenario_json(const struct scenario *scenario);
 
 #endif

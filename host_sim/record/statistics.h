@@ -22,8 +22,8 @@ double samples_rms(const struct samples *samples);
 /* Standard deviation with the divisor n - 1; 0 for a single number. */
 double samples_sd(const struct samples *samples);
 
-/* The quantile of order 0 <= p <= 1 by linear interpolation between order statistics (Hyndman and Fan's type 7). Puts the values in
- * ascending order. O(n log n). */
+/* The quantile of order 0 <= p <= 1 by linear interpolation between order statistics (Hyndman and Fan's type 7). Puts
+ * the values in ascending order. O(n log n). */
 double samples_quantile(struct samples *samples, double p);
 
 #endif

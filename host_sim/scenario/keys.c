@@ -162,7 +162,8 @@ static void free_list(char **values, unsigned count)
     free(values);
 }
 
-/* `text` cut at each `separator` into pieces without spaces around them. Returns the number of pieces; -1: no memory. */
+/* `text` cut at each `separator` into pieces without spaces around them. Returns the number of pieces; -1: no memory.
+ */
 static int split(const char *text, char separator, char ***pieces)
 {
     size_t count = 1;

@@ -1,4 +1,5 @@
-/* The one table of all keys of a scenario. The schema of the file, the checks, --set and the documentation follow from it. */
+/* The one table of all keys of a scenario. The schema of the file, the checks, --set and the documentation follow from
+ * it. */
 #ifndef MOTEHOUND_SIM_KEYS_H
 #define MOTEHOUND_SIM_KEYS_H
 
@@ -34,7 +35,8 @@ const struct scenario_key *scenario_key_find(const char *path);
 /* What a value of this key must be: "a number 0 to 1". Written into text, which is returned. */
 const char *scenario_key_expectation(const struct scenario_key *key, char *text, size_t size);
 
-/* One line for a key that does not exist, with the nearest that does; returns -1. `place` comes before it ("file:line: "). */
+/* One line for a key that does not exist, with the nearest that does; returns -1. `place` comes before it ("file:line:
+ * "). */
 int scenario_key_unknown(const char *place, const char *path, char *error, size_t error_size);
 
 #endif

@@ -118,8 +118,8 @@ static int refuse(const struct csv *csv, const struct column *column, const char
                 length < 40 ? (int)length : 40, found);
 }
 
-/* The next line's values. Returns 1, 0 at the end, or -1 with one line in csv->error. The line read stays csv->line until the
- * next call. */
+/* The next line's values. Returns 1, 0 at the end, or -1 with one line in csv->error. The line read stays csv->line
+ * until the next call. */
 static int read_row(struct csv *csv, bool first)
 {
     if (!first) {
@@ -269,8 +269,8 @@ static int by_stream(const void *a, const void *b)
     return by_value(&left->time_s, &right->time_s);
 }
 
-/* The median time between successive readings of one node and target, to the millisecond of a mote's clock; 0 without any, -1
- * without memory. */
+/* The median time between successive readings of one node and target, to the millisecond of a mote's clock; 0 without
+ * any, -1 without memory. */
 static double median_spacing(const struct recording *recording)
 {
     const size_t readings = recording->reading_count;

@@ -1,9 +1,10 @@
-/* A recording of a real network, from CSV: nodes (`node,x_m,y_m[,z_m]`), readings (`time_s,node,value[,target][,bearing_rad]`)
- * and, optionally, the truth (`time_s,x_m,y_m[,target]`).
+/* A recording of a real network, from CSV: nodes (`node,x_m,y_m[,z_m]`), readings
+ * (`time_s,node,value[,target][,bearing_rad]`) and, optionally, the truth (`time_s,x_m,y_m[,target]`).
  *
- * The first line names the columns, in any order. Errors are one line: file, line, column and what was expected. Refused are
- * NaN and infinity, numbers outside their range, an unknown or a duplicate node, time going backwards, a missing or an
- * unknown column, fewer than four nodes, a file without rows. Lines may end in LF or CRLF; empty lines are skipped. */
+ * The first line names the columns, in any order. Errors are one line: file, line, column and what was expected.
+ * Refused are NaN and infinity, numbers outside their range, an unknown or a duplicate node, time going backwards, a
+ * missing or an unknown column, fewer than four nodes, a file without rows. Lines may end in LF or CRLF; empty lines
+ * are skipped. */
 #ifndef MOTEHOUND_SIM_RECORDING_H
 #define MOTEHOUND_SIM_RECORDING_H
 
@@ -40,8 +41,8 @@ struct recording {
     double interval_s; /* median spacing of the readings of one node and target, rounded to 1 ms */
 };
 
-/* Each fills its part of `recording`, which begins as all zero bytes, from a file's text in memory; nodes first. `name` stands
- * for the file in errors. Cost: O(n log nodes). Returns 0, or -1 with one line in `error`. */
+/* Each fills its part of `recording`, which begins as all zero bytes, from a file's text in memory; nodes first. `name`
+ * stands for the file in errors. Cost: O(n log nodes). Returns 0, or -1 with one line in `error`. */
 int recording_parse_nodes(const char *text, size_t length, const char *name, struct recording *recording, char *error,
                           size_t error_size);
 int recording_parse_readings(const char *text, size_t length, const char *name, struct recording *recording,

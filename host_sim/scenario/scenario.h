@@ -1,8 +1,8 @@
 /* A scenario: everything that one simulation run is made of, as the YAML file gives it. Units stand in the names.
  *
- * The key of a member in a file or in --set is its path: scenario.source.speed_mps is `source.speed_mps`. keys.c holds the
- * one table of all keys with their defaults, ranges and meaning; `motehound list --keys` prints it. Errors are one line
- * in `error`: file, line, key and what was expected. */
+ * The key of a member in a file or in --set is its path: scenario.source.speed_mps is `source.speed_mps`. keys.c holds
+ * the one table of all keys with their defaults, ranges and meaning; `motehound list --keys` prints it. Errors are one
+ * line in `error`: file, line, key and what was expected. */
 #ifndef MOTEHOUND_SIM_SCENARIO_H
 #define MOTEHOUND_SIM_SCENARIO_H
 
@@ -91,20 +91,21 @@ int scenario_init(struct scenario *scenario);
 /* Release what the scenario holds; it may be all zero bytes. */
 void scenario_free(struct scenario *scenario);
 
-/* Apply a YAML document to `scenario`, which scenario_init has filled; `name` stands for the file in errors. Returns 0, or -1 with
- * one line in `error` (the scenario is then half filled, and to be freed). */
+/* Apply a YAML document to `scenario`, which scenario_init has filled; `name` stands for the file in errors. Returns 0,
+ * or -1 with one line in `error` (the scenario is then half filled, and to be freed). */
 int scenario_parse(const char *yaml, size_t length, const char *name, struct scenario *scenario, char *error,
                    size_t error_size);
 
 /* scenario_parse of the file at `path`. A relative network.file is taken from the scenario file's own folder. */
 int scenario_load(const char *path, struct scenario *scenario, char *error, size_t error_size);
 
-/* Set one key from text, as --set does: numbers, words, `source.points` as `x,y[,factor]; ...`, `sweep.values` as `a, b, ...`. An
- * unknown key's error names the nearest known one. Returns 0, or -1 with one line in `error` and the scenario as it was. */
+/* Set one key from text, as --set does: numbers, words, `source.points` as `x,y[,factor]; ...`, `sweep.values` as `a,
+ * b, ...`. An unknown key's error names the nearest known one. Returns 0, or -1 with one line in `error` and the
+ * scenario as it was. */
 int scenario_set(struct scenario *scenario, const char *key, const char *value, char *error, size_t error_size);
 
-/* What only holds between keys: at least four nodes, a path with its points, an outage inside the run, the sink in the field.
- * Returns 0, or -1 with one line in `error`; `name` stands for the file. */
+/* What only holds between keys: at least four nodes, a path with its points, an outage inside the run, the sink in the
+ * field. Returns 0, or -1 with one line in `error`; `name` stands for the file. */
 int scenario_check(const struct scenario *scenario, const char *name, char *error, size_t error_size);
 
 /* The part of it that a replay needs, where there is no source and no deployment. */

@@ -1,6 +1,6 @@
-/* A scenario's YAML file. libcyaml checks its shape by a schema that is made from the table of keys and gives every value as
- * text; scenario_set turns the texts into values, so that a file and --set are read by the same code. libyaml's own document
- * tree is asked only for the line of a value that was refused. */
+/* A scenario's YAML file. libcyaml checks its shape by a schema that is made from the table of keys and gives every
+ * value as text; scenario_set turns the texts into values, so that a file and --set are read by the same code.
+ * libyaml's own document tree is asked only for the line of a value that was refused. */
 #include "scenario/keys.h"
 #include "scenario/text.h"
 
@@ -65,8 +65,8 @@ static cyaml_schema_field_t field_of(size_t index, const char *name)
     return field;
 }
 
-/* One mapping for each section, the part of a path before its dot; the keys of a section stand together in the table. All
- * sections lie over the same struct raw. */
+/* One mapping for each section, the part of a path before its dot; the keys of a section stand together in the table.
+ * All sections lie over the same struct raw. */
 static void make_schema(struct schema *schema)
 {
     memset(schema, 0, sizeof *schema);

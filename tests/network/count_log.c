@@ -1,5 +1,5 @@
-/* count_log FILE [api]: plays an LCM log, by the file provider as any LCM program would, or by the event log's own functions, and
- * prints how many messages came on each channel, and that their times never went backwards. */
+/* count_log FILE [api]: plays an LCM log, by the file provider as any LCM program would, or by the event log's own
+ * functions, and prints how many messages came on each channel, and that their times never went backwards. */
 #include "bus/bus.h"
 
 #include <stdio.h>

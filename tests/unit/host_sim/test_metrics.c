@@ -145,7 +145,8 @@ static void without_truth_there_are_no_errors(void)
     NEAR(20, values[METRIC_ESTIMATES]);
 }
 
-/* Two targets in turn; only target 1 is off by more than 5 m, from instant 20 for 4 and from 40 for 5 of its own instants. */
+/* Two targets in turn; only target 1 is off by more than 5 m, from instant 20 for 4 and from 40 for 5 of its own
+ * instants. */
 static void target_1_strays(const struct observer *observer, int i)
 {
     const bool strays = i % 2 == 1 && ((i >= 20 && i < 28) || (i >= 40 && i < 50));
