@@ -3,8 +3,8 @@
 Unknown are the positions of the source at the sampling instants (straight in between) and ln mu, known is the rest.
 Every reading of every node up to the instant counts (Luo, Eq. (1)-(2), exact), and a random acceleration of a stated
 standard deviation is the prior of the path. The bound of instant l is the trace of the position's block of the inverse
-information after l samples. It is evaluated along the one path of the scenario, so it is a yardstick rather than a limit:
-a tracker whose prior fits that path better may come out below it.
+information after l samples. It is evaluated along the one path of the scenario, so it is a yardstick rather than a
+limit: a tracker whose prior fits that path better may come out below it.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Bound:
 
 
 def sensitivities(scenario: Scenario, nodes: Array, knots: Array, last: int) -> tuple[Array, Array]:
-    """C at the nodes at instant knots[last], and its derivatives [node][knot, axis] by the positions of knots 0..last."""
+    """C at the nodes at the instant knots[last], and its derivatives [node][knot, axis] by the knots 0..last."""
     route, diffusion, time = scenario.route, scenario.number("source.diffusion_m2ps"), float(knots[last])
     age, weight = ages(scenario, time, np.union1d(route.breaks, knots[:last]))
     born = time - age
@@ -71,7 +71,7 @@ def reading_information(scenario: Scenario, level: Array) -> Array:
 
 
 def motion_information(count: int, interval: float, acceleration: float | None) -> Array:
-    """Information of the prior about one axis of the knots [count][count]; without `acceleration`, of the start alone."""
+    """Information of the prior about one axis of the knots [count][count]; the start alone without `acceleration`."""
     information = np.zeros((count, count))
     information[0, 0] = START_SD_M**-2
     if acceleration is not None:
@@ -120,7 +120,7 @@ YARDSTICKS: tuple[float | None, ...] = (None, 0.5, 0.05)
 
 
 def over_deployments(scenario: Scenario, seeds: int) -> dict[str, dict[str, float]]:
-    """Root mean square and median over the instants and the deployments 0, 1, ... seeds - 1, by the acceleration prior."""
+    """Root mean square and median over the instants and the deployments 0 ... seeds - 1, by the acceleration prior."""
     each = [bounds(scenario, scenario.nodes(seed), YARDSTICKS) for seed in range(seeds)]
     found = {}
     for which, acceleration in enumerate(YARDSTICKS):

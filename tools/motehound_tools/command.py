@@ -20,9 +20,7 @@ def find(named: str | None) -> Path:
             if path is None:
                 raise Failure(f"{wanted}: no such program")
             return Path(path)
-    built = [
-        path for path in ROOT.glob("build/host*/motehound") if path.is_file() and os.access(path, os.X_OK)
-    ]
+    built = [path for path in ROOT.glob("build/host*/motehound") if path.is_file() and os.access(path, os.X_OK)]
     if built:
         return max(built, key=lambda path: path.stat().st_mtime)
     installed = shutil.which("motehound")

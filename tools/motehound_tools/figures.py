@@ -167,8 +167,8 @@ def field_picture(output: Output) -> Picture | None:
     return Picture(
         "Field",
         svg_text(figure),
-        f"Concentration at t = {time:g} s of run {run}, integrated from the release along the true path; {len(nodes):,} nodes. "
-        f"Dashed: the tracker's threshold of {scenario.number('tracker.chi'):g} g/m².",
+        f"Concentration at t = {time:g} s of run {run}, integrated from the release along the true path; "
+        f"{len(nodes):,} nodes. Dashed: the tracker's threshold of {scenario.number('tracker.chi'):g} g/m².",
     )
 
 
@@ -318,7 +318,10 @@ def distribution_picture(output: Output) -> Picture | None:
         right.set_xlabel("stated probability, %")
         right.set_ylabel("actual share inside, %")
         right.set_title("Stated uncertainty")
-        caption += " Right: how many errors lie inside the stated ellipse of a given probability; above the dashed line the tracker is more careful than it need be, below it too sure of itself."
+        caption += (
+            " Right: how many errors lie inside the stated ellipse of a given probability; above the dashed line the "
+            "tracker is more careful than it need be, below it too sure of itself."
+        )
     return Picture("Distribution", svg_text(figure), caption)
 
 

@@ -19,7 +19,7 @@ def order_in_track(track: dict[str, Array]) -> Array:
 
 
 def errors(track: dict[str, Array], prefix: str = "") -> Array:
-    """Distance of each estimate (prefix `raw_`: of each unfiltered one) from the truth, m; NaN where either is absent."""
+    """Distance of each estimate (`raw_`: of each unfiltered one) from the truth, m; NaN where either is absent."""
     return np.hypot(track[f"{prefix}x_m"] - track["true_x_m"], track[f"{prefix}y_m"] - track["true_y_m"])
 
 

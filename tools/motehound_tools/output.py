@@ -1,4 +1,4 @@
-"""An output folder of the command: summary.json, runs.csv, track.csv, nodes.csv and scenario.json, or a folder of such folders."""
+"""An output folder of the command (summary.json, runs.csv, track.csv, nodes.csv, scenario.json), or a sweep of them."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def number(value: object) -> str:
 
 
 def as_image(picture: Picture) -> str:
-    """The figure as an <img>, its SVG inside the page: nothing is fetched, and ids of one figure cannot touch another's."""
+    """The figure as an <img> with its SVG inside: nothing is fetched, and ids of one cannot touch another's."""
     data = base64.b64encode(picture.svg.encode()).decode()
     alternative = html.escape(f"{picture.title}. {picture.caption}", quote=True)
     return f'<img src="data:image/svg+xml;base64,{data}" alt="{alternative}">'
@@ -68,9 +68,7 @@ def statistics(results: Output) -> list[dict[str, str]]:
     for name, entry in results.summary["metrics"].items():
         row = {key: number(entry[key]) for key in output.STATISTICS}
         pooled = results.summary.get("pooled", {}).get(name)
-        rows.append(
-            {"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled), **row}
-        )
+        rows.append({"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled), **row})
     return rows
 
 

@@ -12,9 +12,11 @@ from . import command
 from .failure import Failure
 
 
-def is_complete(folder: Path, runs: int, seed: int) -> bool:
-    """The command's files appear whole or not at all, so a summary of as many runs from the same seed is a finished one."""
+def is_complete(folder: Path, runs: int, seed: int, program: Path) -> bool:
+    """Whether as many runs from this seed are there, whole as all files of the command, and younger than it."""
     try:
+        if (folder / "summary.json").stat().st_mtime < program.stat().st_mtime:
+            return False
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
@@ -47,6 +49,6 @@ def run(
         for value in values:
             folder = out / f"{key}={value}"
             bar.update(task, description=folder.name)
-            if not is_complete(folder, runs, seed):
+            if not is_complete(folder, runs, seed, program):
                 command.run(program, scenario, folder, runs, seed, {**settings, key: value})
             bar.advance(task)

@@ -69,8 +69,8 @@ def test_sensitivities_are_derivatives_of_the_concentration() -> None:
 
 
 def test_motion_information_is_what_a_kalman_filter_knows() -> None:
-    # Positions measured with unit variance at every step, second differences of standard deviation a T^2: the variance of the
-    # newest position from the information of all knots must be that of the filter run step by step.
+    # Positions measured with unit variance at every step, second differences of standard deviation a T^2: the variance of
+    # the newest position from the information of all knots must be that of the filter run step by step.
     interval, acceleration, count = 2.0, 0.05, 12
     prior = bound.motion_information(count, interval, acceleration)
     smoothed = np.linalg.inv(prior + np.eye(count))[-1, -1]
@@ -88,7 +88,7 @@ def test_motion_information_is_what_a_kalman_filter_knows() -> None:
 
 
 def test_information_of_a_reading() -> None:
-    # With additive noise alone it is the inverse variance; with relative noise alone the score's variance 1/(mC)^2 + 2/C^2.
+    # Additive noise alone: the inverse variance; relative noise alone: the variance of the score, 1/(mC)^2 + 2/C^2.
     level = np.array([0.5, 3.0])
     additive = scenario(sensor__relative_noise=0.0, sensor__additive_noise=0.1)
     assert bound.reading_information(additive, level) == pytest.approx([100.0, 100.0])

@@ -199,9 +199,12 @@ def test_recomputed_metrics_of_a_known_track(folder: Path) -> None:
 
 
 def test_complete_folders_are_recognised(folder: Path) -> None:
-    assert sweep.is_complete(folder, runs=3, seed=0)
-    assert not sweep.is_complete(folder, runs=4, seed=0)
-    assert not sweep.is_complete(folder / "absent", runs=3, seed=0)
+    program = Path(__file__)
+    assert sweep.is_complete(folder, 3, 0, program)
+    assert not sweep.is_complete(folder, 4, 0, program)
+    assert not sweep.is_complete(folder / "absent", 3, 0, program)
+    os.utime(folder / "summary.json", (1, 1))
+    assert not sweep.is_complete(folder, 3, 0, program)  # older than the program
 
 
 @pytest.mark.parametrize(
