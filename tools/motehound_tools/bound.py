@@ -17,6 +17,7 @@ from scipy.linalg import cho_factor, cho_solve
 from .field import ages
 from .scenario import Array, Scenario
 
+ANYWHERE_SD_M = 1e3  # of a position of which nothing is known
 START_SD_M = 3.0  # of the first position and, per interval, of the first step
 RELEASE_SD_LN = 1.0  # of ln mu
 FLOOR = 1e-3  # g/m2: standard deviation that every reading has at least
@@ -72,7 +73,7 @@ def reading_information(scenario: Scenario, level: Array) -> Array:
 
 def motion_information(count: int, interval: float, acceleration: float | None) -> Array:
     """Information of the prior about one axis of the knots [count][count]; the start alone without `acceleration`."""
-    information = np.zeros((count, count))
+    information = np.eye(count) * ANYWHERE_SD_M**-2
     information[0, 0] = START_SD_M**-2
     if acceleration is not None:
         if count > 1:

@@ -5,11 +5,13 @@ Written independently of the simulator, so that each checks the other.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from .scenario import Array, Scenario
 
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+_FINE, _COARSE = np.polynomial.legendre.leggauss(6), np.polynomial.legendre.leggauss(3)
 _YOUNGEST_S = 1e-7  # less age than this adds nothing off the source point
 
 
@@ -29,10 +31,14 @@ def ages(scenario: Scenario, time: float, breaks: Array) -> tuple[Array, Array]:
             age = edges[-1]
             step = min(age, 3.0 * np.sqrt(diffusion * age) / speed, period / 8.0)
             edges.append(end if age + 1.2 * step > end else age + step)
-    edge = np.array(edges)
-    half = np.diff(edge)[:, None] / 2.0
-    points = (edge[:-1, None] + half) + half * _POINTS
-    return points.ravel(), (half * _WEIGHTS).ravel()
+    points, weights = [], []
+    for start, end in pairwise(edges):
+        half = (end - start) / 2.0
+        smooth = 5.0 * half < min(start, np.sqrt(diffusion * start) / speed, period / 8.0)
+        rule = _COARSE if smooth else _FINE
+        points.append(start + half + half * rule[0])
+        weights.append(half * rule[1])
+    return np.concatenate(points), np.concatenate(weights)
 
 
 def concentration(scenario: Scenario, places: Array, time: float) -> Array:

@@ -125,7 +125,8 @@ def loss_table(read: Read) -> list[str]:
         worst, middle = max(waits), float(np.median(waits))
         lines.append(
             f"| {path}: samples after the gap until the error is below {FOUND_M:g} m, "
-            f"worst run (median {number(middle)}) | {number(worst) if math.isfinite(worst) else 'never'} | ≤ 10 | {verdict(worst <= 10)} |"
+            f"worst run (median {number(middle)}) | {number(worst) if math.isfinite(worst) else 'never'} "
+            f"| ≤ 10 | {verdict(worst <= 10)} |"
         )
     return lines
 
