@@ -25,16 +25,17 @@ FLOOR = 1e-3  # g/m2: standard deviation that every reading has at least
 
 @dataclass(frozen=True)
 class Bound:
-    """sqrt(trace) of the position's bound at every sampling instant from the first reading on, m."""
+    """sqrt(trace) of the position's bound, m, at every sampling instant after the first."""
 
     time: Array
     sd: Array
+    heard: Array  # whether readings came at that instant; where none did, a tracker has no position to be judged by
 
     def rms(self, skip: int = 3) -> float:
-        return float(np.sqrt(np.mean(self.sd[skip:] ** 2)))
+        return float(np.sqrt(np.mean(self.sd[skip:][self.heard[skip:]] ** 2)))
 
     def median(self, skip: int = 3) -> float:
-        return float(np.median(self.sd[skip:]))
+        return float(np.median(self.sd[skip:][self.heard[skip:]]))
 
 
 def sensitivities(scenario: Scenario, nodes: Array, knots: Array, last: int) -> tuple[Array, Array]:
@@ -90,15 +91,15 @@ def bounds(scenario: Scenario, nodes: Array, accelerations: tuple[float | None, 
     interval = scenario.number("sensor.interval_s")
     knots: Array = np.arange(np.floor(scenario.route.end / interval + 1e-9) + 1.0, dtype=np.float64) * interval
     kept = 1.0 - scenario.number("sensor.loss")
-    silent_from = scenario.number("sensor.outage_start_s")
-    silent_to = silent_from + scenario.number("sensor.outage_s")
+    since_outage = knots - scenario.number("sensor.outage_start_s")
+    heard = (since_outage < 0.0) | (since_outage >= scenario.number("sensor.outage_s"))
     size = 1 + 2 * len(knots)  # ln mu, then x and y of each knot
     information = np.zeros((size, size))
     information[0, 0] = RELEASE_SD_LN**-2
     variance = np.zeros((len(accelerations), len(knots)))
     for last in range(1, len(knots)):
         used = 1 + 2 * (last + 1)
-        if not silent_from <= knots[last] < silent_to:
+        if heard[last]:
             level, gradient = sensitivities(scenario, nodes, knots, last)
             rows = np.concatenate([level[:, None], gradient.reshape(len(nodes), -1)], axis=1)
             rows *= np.sqrt(kept * reading_information(scenario, level))[:, None]
@@ -114,7 +115,7 @@ def bounds(scenario: Scenario, nodes: Array, accelerations: tuple[float | None, 
             scaled = cho_factor(total * scale * scale[:, None] + 1e-13 * np.eye(used))
             solved = cho_solve(scaled, newest * scale[:, None]) * scale[:, None]
             variance[which, last] = solved[-2, 0] + solved[-1, 1]
-    return [Bound(knots[1:], np.sqrt(v[1:])) for v in variance]
+    return [Bound(knots[1:], np.sqrt(v[1:]), heard[1:]) for v in variance]
 
 
 YARDSTICKS: tuple[float | None, ...] = (None, 0.5, 0.05)

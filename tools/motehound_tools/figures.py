@@ -56,9 +56,9 @@ class Picture:
     caption: str
 
 
-def svg_text(figure: Figure) -> str:
+def svg_text(figure: Figure, dpi: int = 110) -> str:
     stream = io.StringIO()
-    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None}, bbox_inches="tight", dpi=110)
+    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None}, bbox_inches="tight", dpi=dpi)
     pyplot.close(figure)
     text = stream.getvalue()
     return text[text.index("<svg") :]
@@ -168,7 +168,8 @@ def field_picture(output: Output) -> Picture | None:
         "Field",
         svg_text(figure),
         f"Concentration at t = {time:g} s of run {run}, integrated from the release along the true path; "
-        f"{len(nodes):,} nodes. Dashed: the tracker's threshold of {scenario.number('tracker.chi'):g} g/m².",
+        f"{int(scenario.number('network.nodes')):,} nodes. "
+        f"Dashed: the tracker's threshold of {scenario.number('tracker.chi'):g} g/m².",
     )
 
 

@@ -110,3 +110,4 @@ def test_bound_grows_through_an_outage() -> None:
     during = found.sd[(found.time >= 10.0) & (found.time < 16.0)]
     assert (np.diff(during) > 0.0).all()
     assert found.sd[found.time == 17.0] < 0.5 * during[-1]
+    assert (found.heard == ((found.time < 10.0) | (found.time >= 16.0))).all()
