@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from .field import ages
@@ -29,7 +30,9 @@ class Bound:
 
     time: Array
     sd: Array
-    heard: Array  # whether readings came at that instant; where none did, a tracker has no position to be judged by
+    heard: NDArray[
+        np.bool_
+    ]  # whether readings came at that instant; where none did, a tracker has no position to be judged by
 
     def rms(self, skip: int = 3) -> float:
         return float(np.sqrt(np.mean(self.sd[skip:][self.heard[skip:]] ** 2)))
