@@ -60,7 +60,7 @@ struct mh_trail_fit {
 
     struct mh_vec2 prior_place;       /* of knots[0] */
     struct mh_sym2 prior_information; /* inverse covariance */
-    mh_real log_rate_sd;              /* about log_rate as it is when the solution begins */
+    mh_real prior_log_rate, log_rate_sd;
 
     mh_real cost;      /* all residuals' rho at the solution */
     mh_real data_cost; /* the rows' share */

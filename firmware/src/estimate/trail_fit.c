@@ -113,8 +113,8 @@ static mh_real add_motion_prior(const struct mh_trail_fit *fit, int k, mh_real *
     return add_motion(fit, normal, gradient, 0, 2, coefficients + 1, constant);
 }
 
-/* Cost where the knots are; the normal matrix and the gradient of half the cost go to the given memory. `log_rate` is the prior's centre. */
-static mh_real linearise(struct mh_trail_fit *fit, mh_real log_rate, mh_real *normal, mh_real *gradient)
+/* Cost where the knots are; the normal matrix and the gradient of half the cost go to the given memory. */
+static mh_real linearise(struct mh_trail_fit *fit, mh_real *normal, mh_real *gradient)
 {
     const int n = unknowns(fit);
     for (int i = 0; i < MH_PACKED_SIZE(n); i++) {
@@ -152,7 +152,7 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real log_rate, mh_real *no
     }
 
     const mh_real rate_information = 1.0f / squared(fit->log_rate_sd);
-    const mh_real rate_excess = fit->log_rate - log_rate;
+    const mh_real rate_excess = fit->log_rate - fit->prior_log_rate;
     normal[mh_packed_index(n - 1, n - 1)] += rate_information;
     gradient[n - 1] += rate_information * rate_excess;
     return cost + rate_information * squared(rate_excess);
@@ -196,7 +196,7 @@ static void go_back(struct mh_trail_fit *fit, const struct stand *stand)
 
 /* One Levenberg-Marquardt trial: step by (A + damping diag A)^-1 gradient. Leaves cost, normal matrix (in fit->covariance) and gradient
  * (in fit->step) of the new place; false if there was none or the cost is higher. */
-static bool try_step(struct mh_trail_fit *fit, mh_real damping, mh_real log_rate, mh_real *cost)
+static bool try_step(struct mh_trail_fit *fit, mh_real damping, mh_real *cost)
 {
     const int n = unknowns(fit);
     mh_real *factor = fit->covariance;
@@ -212,7 +212,7 @@ static bool try_step(struct mh_trail_fit *fit, mh_real damping, mh_real log_rate
     }
     mh_cholesky_solve(n, factor, fit->step);
     apply_step(fit, fit->step);
-    const mh_real trial = linearise(fit, log_rate, fit->covariance, fit->step);
+    const mh_real trial = linearise(fit, fit->covariance, fit->step);
     if (!(trial <= *cost)) {
         return false;
     }
@@ -236,16 +236,15 @@ static enum mh_status conclude(struct mh_trail_fit *fit, mh_real cost)
 
 enum mh_status mh_trail_fit_assess(struct mh_trail_fit *fit)
 {
-    const mh_real cost = linearise(fit, fit->log_rate, fit->normal, fit->gradient);
+    const mh_real cost = linearise(fit, fit->normal, fit->gradient);
     return conclude(fit, cost);
 }
 
 enum mh_status mh_trail_fit_solve(struct mh_trail_fit *fit)
 {
-    const mh_real log_rate = fit->log_rate;
     struct stand before, last;
     remember(fit, &before);
-    mh_real cost = linearise(fit, log_rate, fit->normal, fit->gradient);
+    mh_real cost = linearise(fit, fit->normal, fit->gradient);
     mh_real damping = 1e-3f;
     bool improving = mh_finite(cost);
     for (int step = 0; step < STEPS_MAX && improving; step++) {
@@ -253,7 +252,7 @@ enum mh_status mh_trail_fit_solve(struct mh_trail_fit *fit)
         bool taken = false;
         remember(fit, &last);
         for (int trial = 0; trial < TRIALS_MAX && !taken; trial++) {
-            taken = try_step(fit, damping, log_rate, &cost);
+            taken = try_step(fit, damping, &cost);
             if (taken) {
                 damping *= 0.2f;
             } else {
@@ -341,6 +340,7 @@ static void slide(struct mh_trail_fit *fit)
 void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time)
 {
     const int n = unknowns(fit);
+    fit->prior_log_rate = fit->log_rate;
     fit->log_rate_sd = mh_sqrt(fit->covariance[mh_packed_index(n - 1, n - 1)] + squared(LOG_RATE_DRIFT));
     if (fit->knot_count == MH_FIT_KNOTS) {
         slide(fit);

@@ -236,6 +236,7 @@ static enum mh_status restart(struct mh_diffusion *track, const struct instant *
 {
     const mh_real expected = mh_log(track->config.release_gps);
     track->fit.log_rate = mh_clamp(track->fit.log_rate, expected - 1.60943791f, expected + 1.60943791f); /* ln 5 */
+    track->fit.prior_log_rate = track->fit.log_rate;
     track->fit.log_rate_sd = 0.5f;
     return start(track, now, centre);
 }
@@ -247,15 +248,21 @@ static mh_real misfit(const struct mh_trail_fit *fit)
 
 static struct mh_fit_knot *newest(struct mh_trail_fit *fit) { return &fit->knots[fit->knot_count - 1]; }
 
-/* Solve again with the newest knot at the cluster's centre; keep the better of the two. */
-static enum mh_status second_start(struct mh_trail_fit *fit, struct mh_vec2 centre)
+/* Solve again with the knots after number `from` on the straight line to the cluster's centre; keep the better of the two. */
+static enum mh_status second_start(struct mh_trail_fit *fit, int from, struct mh_vec2 centre)
 {
     struct mh_fit_knot knots[MH_FIT_KNOTS];
     const mh_real cost = fit->cost, log_rate = fit->log_rate;
     for (int k = 0; k < fit->knot_count; k++) {
         knots[k] = fit->knots[k];
     }
-    newest(fit)->place = centre;
+    const struct mh_vec2 start = knots[from].place;
+    for (int k = from + 1; k < fit->knot_count; k++) {
+        const mh_real share = (mh_real)(k - from) / (mh_real)(fit->knot_count - 1 - from);
+        fit->knots[k].place.x = start.x + share * (centre.x - start.x);
+        fit->knots[k].place.y = start.y + share * (centre.y - start.y);
+    }
+    fit->log_rate = fit->prior_log_rate;
     if (mh_trail_fit_solve(fit) == MH_OK && fit->cost < cost) {
         return MH_OK;
     }
@@ -289,7 +296,10 @@ static enum mh_status follow(struct mh_diffusion *track, const struct instant *n
     if (status == MH_OK && cluster.found &&
         (misfit(fit) > 1.0f ||
          distance2(newest(fit)->place, cluster.centre) > squared(0.25f * track->config.reach_m))) {
-        status = second_start(fit, cluster.centre);
+        status = second_start(fit, fit->knot_count - 2, cluster.centre);
+        if (status == MH_OK && misfit(fit) > 1.0f) {
+            status = second_start(fit, 0, cluster.centre);
+        }
     }
     *restarted = status == MH_OK && is_lost(track, &cluster);
     return *restarted ? restart(track, now, cluster.centre) : status;
@@ -384,6 +394,7 @@ static void work(struct mh_diffusion *track, const struct instant *now, bool *st
         const struct cluster cluster = find_cluster(track, now);
         if (cluster.found) {
             track->fit.log_rate = mh_log(track->config.release_gps);
+            track->fit.prior_log_rate = track->fit.log_rate;
             track->fit.log_rate_sd = 1.0f;
             track->asked = cluster.centre;
             track->asked_radius = track->config.reach_m;
