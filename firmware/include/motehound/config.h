@@ -36,7 +36,11 @@
 #ifndef MH_DIFFUSION_TRAIL
 #define MH_DIFFUSION_TRAIL (MH_DIFFUSION_SMALL ? 14 : 60)
 #endif
-/* Sampling instants without a significant increment after which its track ends. */
+/* Its track ends after so many intervals without any measurement near it, or so many instants in succession with measurements but without a
+ * significant increment. */
+#ifndef MH_DIFFUSION_COAST
+#define MH_DIFFUSION_COAST 30
+#endif
 #ifndef MH_DIFFUSION_SILENCE
 #define MH_DIFFUSION_SILENCE 10
 #endif
@@ -69,8 +73,8 @@
 #if MH_DIFFUSION_TRAIL < 4 || MH_DIFFUSION_TRAIL > 250
 #error "MH_DIFFUSION_TRAIL must be 4 to 250: its knots thin out with age, so more buy nothing"
 #endif
-#if MH_DIFFUSION_SILENCE < 1 || MH_DIFFUSION_SILENCE > 1000
-#error "MH_DIFFUSION_SILENCE must be 1 to 1000"
+#if MH_DIFFUSION_COAST < 1 || MH_DIFFUSION_COAST > 250 || MH_DIFFUSION_SILENCE < 1 || MH_DIFFUSION_SILENCE > 250
+#error "MH_DIFFUSION_COAST and MH_DIFFUSION_SILENCE must be 1 to 250: intervals of up to an hour, counted in ticks"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"

@@ -8,29 +8,34 @@
  * It wants increments from every node near the source, silent ones too: their silence says where the source is not. interest() names them;
  * its radius follows the density of the answers so that about 1.25 MH_DIFFUSION_NEAR answer.
  *
- * Instants without measurements, and instants that the caller left out, are real time alike: the fit goes on by dead reckoning with a covariance
- * that grows. After MH_DIFFUSION_SILENCE instants without a significant increment the track ends; the next detection starts a new one.
+ * Instants without measurements near the source, and instants that the caller left out, are real time alike: the answer is dead reckoning from the
+ * last fit, its covariance grows by an independent turn an interval. When measurements come back the gap becomes one straight segment of the path, and
+ * the fit goes on; after MH_DIFFUSION_COAST intervals, or MH_DIFFUSION_SILENCE instants in succession without a significant increment, the track ends
+ * and the next detection starts a new one. A track also begins again (MH_ESTIMATE_STARTED) when the fit has failed to explain the increments for
+ * three instants, or their cluster has been elsewhere for four.
  *
- * The covariance is that of the fit times the level of its own residuals, averaged over some ten instants: the noise assumed below is
- * generous, which the fit needs, and the covariance would be too large by that. */
+ * The release rate may change along the path, as fast as it has been seen to change lately.
+ *
+ * The covariance is that of the fit times the mean square of its own residuals: the noise assumed below is generous, which the fit needs, and the
+ * covariance would be too large by that. A fit that fails, which needs numbers near the ends of float, ends the track. */
 #ifndef MOTEHOUND_DIFFUSION_H
 #define MOTEHOUND_DIFFUSION_H
 
 #include "motehound/tracker.h"
 #include "motehound/trail_fit.h"
 
+/* All finite and in the range given, or init() fails. */
 struct mh_diffusion_config {
-    mh_real diffusion_m2ps; /* D, 1e-4 to 1e3; nominal 1 */
-    mh_real chi;            /* significant concentration, g/m2, 1e-3 to 1e3; nominal 0.2 */
-    mh_real
-        release_gps; /* expected release rate, 1e-3 to 1e5; nominal 100 (known to within a factor of about e, bounded to a factor of 20) */
-    mh_real additive_sd; /* of a reading, g/m2, 1e-3 to 1e3; nominal 0.05, deliberately generous */
-    mh_real relative_sd; /* of a reading, as a share of it, 0 to 1; nominal 0.05, deliberately generous */
-    mh_real
-        turn_mps2; /* sd of the source's acceleration, 1e-3 to 1e2; nominal 0.35. Sharper turns are taken as outliers */
-    mh_real speed_mps;       /* sd of its velocity at the start, 1e-2 to 1e3; nominal 3 */
-    mh_real reach_m;         /* how far from the source an increment still tells something, 0.1 to 1e3; nominal 8 */
-    struct mh_region region; /* the source stays within; nominal: unbounded (+- 1e9 mm) */
+    mh_real diffusion_m2ps;       /* D, 1e-4 to 1e3; nominal 1 */
+    mh_real chi;                  /* significant concentration, g/m2, 1e-3 to 1e3; nominal 0.2 */
+    mh_real release_gps;          /* expected release rate, 1e-3 to 1e5, right to a factor of 20; nominal 100 */
+    mh_real release_drift;        /* sd of its relative change in an interval at least, 1e-3 to 1; nominal 0.05 */
+    mh_real additive_sd;          /* of a reading, g/m2, 1e-3 to 1e3; nominal 0.05, deliberately generous */
+    mh_real relative_sd;          /* of a reading, as a share of it, 0 to 1; nominal 0.05, deliberately generous */
+    mh_real turn_mps2;            /* sd of the acceleration, 1e-3 to 1e2; nominal 0.35. Sharper turns count as outliers */
+    mh_real speed_mps;            /* sd of the velocity at the start, 1e-2 to 1e3; nominal 3 */
+    mh_real reach_m;              /* how far off an increment tells of the newest release, 0.1 to 1e3; nominal 8 */
+    struct mh_region region;      /* the source stays within; nominal: unbounded (+- 1e9 mm) */
 };
 
 struct mh_diffusion {
@@ -40,17 +45,20 @@ struct mh_diffusion {
     mh_tick time;           /* of the last step */
     bool stepped;           /* time is valid */
     bool tracking;          /* fit holds a solution */
-    int since;              /* instants since the (re)start */
+    int since;              /* instants since the (re)start or the last gap */
     int silent;             /* instants in succession without a significant increment */
-    int doubtful, astray;   /* instants in succession with a bad fit; with the cluster of increments elsewhere */
-    mh_real level;          /* mean square of the standardised residuals */
+    int doubtful;           /* instants in succession with a bad fit */
+    int astray;             /* instants in succession with the cluster of increments elsewhere */
+    mh_real rate_change2;   /* mean square of the change of ln(rate) in an interval lately */
+    mh_real usual_misfit;   /* slow mean of the cost per row */
+    mh_real level;          /* mean square of the standardised residuals lately */
     mh_real density;        /* of nodes that answer, 1/m2; 0: not known */
-    struct mh_vec2 asked;   /* centre and radius of the interest */
+    struct mh_vec2 asked;   /* centre of the interest */
     mh_real asked_radius;
     uint16_t used; /* measurements of the last instant that the fit uses */
 };
 
-/* state_size is sizeof(struct mh_diffusion). step() costs at most 3 solutions of trail_fit.h, typically one of 4 evaluations. */
+/* state_size is sizeof(struct mh_diffusion). step() costs at most 4 solutions of trail_fit.h, typically one of 4 evaluations. */
 extern const struct mh_tracker mh_tracker_diffusion;
 
 void mh_diffusion_config_default(struct mh_diffusion_config *config);

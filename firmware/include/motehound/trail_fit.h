@@ -1,12 +1,13 @@
 /* The fit of a source's recent path to the increments it left at the nodes: a window of knots, one a sampling instant, joined by straight
- * segments, and one release rate, by Levenberg-Marquardt on the exact line-source model of Luo, Eq. (1)-(2), (7).
+ * segments, and the release rate, by Levenberg-Marquardt on the exact line-source model of Luo, Eq. (1)-(2), (7).
  *
- * Unknowns: the m + 1 knots of the window, oldest first, two coordinates each, then ln(release rate): n = 2 (m + 1) + 1.
+ * Unknowns: the m + 1 knots of the window, oldest first, two coordinates each, then ln(release rate) on the newest segment and its step from
+ * segment to segment: n = 2 (m + 1) + 2.
  * Residuals:
  *   data    (y - h) / sqrt(R), Huber 4: y the increment of a node at an instant in the window, h what the model says: the frozen trail's share
  *           (the row's `base`) plus rate times the segments since, now minus one interval before;
  *   prior   of the oldest knot, Gaussian; of the changes of velocity from segment to segment, Huber 1.5 (a source mostly keeps its course, and
- *           sometimes turns sharply); of ln(rate), Gaussian.
+ *           sometimes turns sharply); of ln(rate) and its step, Gaussian.
  * A fit without any row is the prior's prediction, with its covariance. */
 #ifndef MOTEHOUND_TRAIL_FIT_H
 #define MOTEHOUND_TRAIL_FIT_H
@@ -17,7 +18,7 @@
 
 enum {
     MH_FIT_KNOTS = MH_DIFFUSION_WINDOW + 1,
-    MH_FIT_UNKNOWNS = 2 * MH_FIT_KNOTS + 1,
+    MH_FIT_UNKNOWNS = 2 * MH_FIT_KNOTS + 2,
     MH_FIT_ROWS = MH_DIFFUSION_WINDOW * (MH_DIFFUSION_NEAR + MH_DIFFUSION_STRONG)
 };
 
@@ -56,11 +57,14 @@ struct mh_trail_fit {
     struct mh_fit_knot knots[MH_FIT_KNOTS];
     struct mh_fit_row rows[MH_FIT_ROWS];
     int knot_count, row_count;
-    mh_real log_rate;
+    mh_real log_rate;      /* of the newest segment */
+    mh_real log_rate_step; /* from segment to segment */
 
     struct mh_vec2 prior_place;       /* of knots[0] */
     struct mh_sym2 prior_information; /* inverse covariance */
     mh_real prior_log_rate, log_rate_sd;
+    mh_real log_rate_step_sd; /* about 0 */
+    mh_real log_rate_drift;   /* sd of the change of log_rate beyond its step, over one interval */
 
     mh_real cost;      /* all residuals' rho at the solution */
     mh_real data_cost; /* the rows' share */
@@ -73,7 +77,7 @@ struct mh_trail_fit {
 /* An empty trail and window that start at `place`, where the source is believed to stand with standard deviation sd_m from `before` to `time`. */
 void mh_trail_fit_start(struct mh_trail_fit *fit, struct mh_vec2 place, mh_real sd_m, mh_tick before, mh_tick time);
 
-/* The window moves on to `time`, by dead reckoning. When it is full its oldest knot is frozen into the trail first, and what was learnt of the
+/* The window moves on to `time`, after the newest knot, by dead reckoning. When it is full its oldest knot is frozen into the trail first, and what was learnt of the
  * next becomes the prior; rows that no longer see the window go. Needs a solution, and at least two knots. */
 void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time);
 

@@ -5,18 +5,19 @@
 #define DATA_HUBER 4.0f
 #define TURN_HUBER 1.5f
 #define LOG_RATE_STEP_MAX 1.0f
-#define BASE_ERROR 0.1f      /* the frozen trail's share is wrong by about a tenth of itself */
-#define KNOT_DRIFT_M2 1e-4f  /* what the linearisation forgets, for each instant */
-#define LOG_RATE_DRIFT 0.05f /* of the release rate, for each instant */
+#define BASE_ERROR 0.1f     /* the frozen trail's share is wrong by about a tenth of itself */
+#define KNOT_DRIFT_M2 1e-4f /* what the linearisation forgets, for each instant */
 
 static mh_real seconds(mh_tick earlier, mh_tick later)
 {
     return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
 }
 
-static int unknowns(const struct mh_trail_fit *fit) { return 2 * fit->knot_count + 1; }
+static int unknowns(const struct mh_trail_fit *fit) { return 2 * fit->knot_count + 2; }
 
 static mh_real squared(mh_real a) { return a * a; }
+
+static mh_real interval_s(const struct mh_trail_fit *fit) { return seconds(0, fit->model.interval); }
 
 /* rho(r) = r^2 inside, 2 h r - h^2 outside, and the weight that makes r^2 * weight the same slope. */
 static mh_real huber(mh_real residual, mh_real bound, mh_real *weight)
@@ -40,11 +41,16 @@ static void accumulate(mh_real *normal, mh_real *gradient, int first, int length
     }
 }
 
+/* Release rate on the way to knot k. */
+static mh_real rate_of_segment(const struct mh_trail_fit *fit, int k)
+{
+    return mh_exp(fit->log_rate + fit->log_rate_step * (mh_real)(k + 1 - fit->knot_count));
+}
+
 /* The model's increment of a row, and its derivatives by all unknowns. */
-static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row *row, mh_real rate, mh_real *j)
+static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row *row, const mh_real *rates, mh_real *j)
 {
     const int n = unknowns(fit);
-    mh_real sum = 0.0f;
     for (int i = 0; i < n; i++) {
         j[i] = 0.0f;
     }
@@ -60,7 +66,9 @@ static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row
         segment.age_a = seconds(start, row->time - fit->model.interval);
         segment.age_b = seconds(end->time, row->time - fit->model.interval);
         mh_segment_add_field(&segment, row->node, fit->model.diffusion_m2ps, -1.0f, &field);
-        sum += field.value;
+        const mh_real rate = rates[k];
+        j[n - 2] += rate * field.value;
+        j[n - 1] += rate * field.value * (mh_real)(k + 1 - fit->knot_count);
         if (k > 0) {
             j[2 * k - 2] += rate * field.da.x;
             j[2 * k - 1] += rate * field.da.y;
@@ -68,8 +76,7 @@ static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row
         j[2 * k] += rate * field.db.x;
         j[2 * k + 1] += rate * field.db.y;
     }
-    j[n - 1] = rate * sum;
-    return row->base + rate * sum;
+    return row->base + j[n - 2];
 }
 
 /* One coordinate of a prior on the motion: coefficients c[0..length-1] of the knots from `first` on, every second unknown. */
@@ -104,7 +111,7 @@ static mh_real add_motion_prior(const struct mh_trail_fit *fit, int k, mh_real *
     }
     const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count > 0 ? fit->trail.count - 1 : 0];
     const mh_real before = seconds(k > 1 ? fit->knots[k - 2].time : frozen->time, fit->knots[k - 1].time);
-    const mh_real scale = 1.0f / (fit->model.turn_mps2 * 0.5f * (before + after));
+    const mh_real scale = 1.0f / (fit->model.turn_mps2 * mh_sqrt(0.5f * (before + after) * interval_s(fit)));
     const mh_real coefficients[3] = {scale / before, -scale / before - scale / after, scale / after};
     if (k > 1) {
         return add_motion(fit, normal, gradient, k - 2, 3, coefficients, none);
@@ -124,12 +131,15 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real *normal, mh_real *gra
         gradient[i] = 0.0f;
     }
 
-    const mh_real rate = mh_exp(fit->log_rate);
+    mh_real rates[MH_FIT_KNOTS];
+    for (int k = 0; k < fit->knot_count; k++) {
+        rates[k] = rate_of_segment(fit, k);
+    }
     mh_real data_cost = 0.0f;
     for (int i = 0; i < fit->row_count; i++) {
         const struct mh_fit_row *row = &fit->rows[i];
         mh_real j[MH_FIT_UNKNOWNS], weight;
-        const mh_real excess = row_model(fit, row, rate, j) - row->increment;
+        const mh_real excess = row_model(fit, row, rates, j) - row->increment;
         const mh_real information = 1.0f / (row->variance + squared(BASE_ERROR * row->base));
         data_cost += huber(excess * mh_sqrt(information), DATA_HUBER, &weight);
         accumulate(normal, gradient, 0, n, j, weight * information, excess);
@@ -151,11 +161,15 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real *normal, mh_real *gra
         cost += add_motion_prior(fit, k, normal, gradient);
     }
 
-    const mh_real rate_information = 1.0f / squared(fit->log_rate_sd);
-    const mh_real rate_excess = fit->log_rate - fit->prior_log_rate;
-    normal[mh_packed_index(n - 1, n - 1)] += rate_information;
-    gradient[n - 1] += rate_information * rate_excess;
-    return cost + rate_information * squared(rate_excess);
+    const mh_real prior[2][2] = {{fit->log_rate - fit->prior_log_rate, fit->log_rate_sd},
+                                 {fit->log_rate_step, fit->log_rate_step_sd}};
+    for (int i = 0; i < 2; i++) {
+        const mh_real weight = 1.0f / squared(prior[i][1]);
+        const mh_real one = 1.0f;
+        accumulate(normal, gradient, n - 2 + i, 1, &one, weight, prior[i][0]);
+        cost += weight * squared(prior[i][0]);
+    }
+    return cost;
 }
 
 static void apply_step(struct mh_trail_fit *fit, const mh_real *step)
@@ -167,13 +181,15 @@ static void apply_step(struct mh_trail_fit *fit, const mh_real *step)
         place->y = mh_clamp(place->y - step[2 * k + 1], bounds->low.y, bounds->high.y);
     }
     const mh_real change = mh_clamp(step[2 * fit->knot_count], -LOG_RATE_STEP_MAX, LOG_RATE_STEP_MAX);
+    fit->log_rate_step =
+        mh_clamp(fit->log_rate_step - step[2 * fit->knot_count + 1], -LOG_RATE_STEP_MAX, LOG_RATE_STEP_MAX);
     fit->log_rate = mh_clamp(fit->log_rate - change, bounds->log_rate_low, bounds->log_rate_high);
 }
 
 /* Where the unknowns stand, to come back to. */
 struct stand {
     struct mh_vec2 places[MH_FIT_KNOTS];
-    mh_real log_rate, data_cost;
+    mh_real log_rate, log_rate_step, data_cost;
 };
 
 static void remember(const struct mh_trail_fit *fit, struct stand *stand)
@@ -182,6 +198,7 @@ static void remember(const struct mh_trail_fit *fit, struct stand *stand)
         stand->places[k] = fit->knots[k].place;
     }
     stand->log_rate = fit->log_rate;
+    stand->log_rate_step = fit->log_rate_step;
     stand->data_cost = fit->data_cost;
 }
 
@@ -191,6 +208,7 @@ static void go_back(struct mh_trail_fit *fit, const struct stand *stand)
         fit->knots[k].place = stand->places[k];
     }
     fit->log_rate = stand->log_rate;
+    fit->log_rate_step = stand->log_rate_step;
     fit->data_cost = stand->data_cost;
 }
 
@@ -296,6 +314,7 @@ void mh_trail_fit_start(struct mh_trail_fit *fit, struct mh_vec2 place, mh_real 
     fit->knots[0] = first;
     fit->knots[1] = second;
     fit->prior_place = place;
+    fit->log_rate_step = 0.0f;
     fit->prior_information.xx = fit->prior_information.yy = 1.0f / squared(sd_m);
     fit->prior_information.xy = 0.0f;
 }
@@ -303,7 +322,7 @@ void mh_trail_fit_start(struct mh_trail_fit *fit, struct mh_vec2 place, mh_real 
 /* The oldest knot joins the trail, the next becomes the oldest with what is known of it. */
 static void slide(struct mh_trail_fit *fit)
 {
-    const struct mh_trail_knot frozen = {fit->knots[0].place, fit->knots[0].time, mh_exp(fit->log_rate)};
+    const struct mh_trail_knot frozen = {fit->knots[0].place, fit->knots[0].time, rate_of_segment(fit, 0)};
     const bool has_segment = fit->trail.count > 0;
     const struct mh_trail_knot newest = fit->trail.knots[has_segment ? fit->trail.count - 1 : 0];
 
@@ -339,12 +358,18 @@ static void slide(struct mh_trail_fit *fit)
 
 void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time)
 {
+    /* the rate goes on as it went; variance of the sum of two unknowns */
     const int n = unknowns(fit);
-    fit->prior_log_rate = fit->log_rate;
-    fit->log_rate_sd = mh_sqrt(fit->covariance[mh_packed_index(n - 1, n - 1)] + squared(LOG_RATE_DRIFT));
+    const mh_real *p = fit->covariance;
+    const mh_real variance =
+        p[mh_packed_index(n - 2, n - 2)] + 2.0f * p[mh_packed_index(n - 1, n - 2)] + p[mh_packed_index(n - 1, n - 1)];
     if (fit->knot_count == MH_FIT_KNOTS) {
         slide(fit);
     }
+    fit->log_rate = mh_clamp(fit->log_rate + fit->log_rate_step, fit->bounds.log_rate_low, fit->bounds.log_rate_high);
+    fit->prior_log_rate = fit->log_rate;
+    fit->log_rate_sd = mh_sqrt(variance + squared(fit->log_rate_drift) *
+                                              seconds(fit->knots[fit->knot_count - 1].time, time) / interval_s(fit));
     const struct mh_fit_knot *last = &fit->knots[fit->knot_count - 1];
     const struct mh_fit_knot *older = last - 1;
     struct mh_fit_knot *next = &fit->knots[fit->knot_count];

@@ -1,8 +1,10 @@
 #include "motehound/diffusion.h"
 
 #define CLUSTER_CANDIDATES 12
-#define CLUSTER_LEAST 3    /* increments that make a cluster */
-#define DETECTIONS_LEAST 4 /* concentrations above chi that make a start */
+#define CLUSTER_LEAST 3     /* increments that make a cluster */
+#define DETECTIONS_LEAST 4  /* concentrations above chi that make a start */
+#define LEVEL_MIN 0.01f     /* straight segments do not fit a curved path better than that */
+#define LEVEL_INERTIA 10.0f /* rows' worth of what was known before */
 #define SIGNIFICANCE_MAX 8.0f
 #define RANKING_MAX (MH_DIFFUSION_STRONG > CLUSTER_CANDIDATES ? MH_DIFFUSION_STRONG : CLUSTER_CANDIDATES)
 
@@ -25,6 +27,11 @@ struct instant {
     const struct mh_measurement *measurements;
     size_t count;
 };
+
+static mh_real seconds(mh_tick earlier, mh_tick later)
+{
+    return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
+}
 
 static mh_real squared(mh_real a) { return a * a; }
 
@@ -55,6 +62,7 @@ void mh_diffusion_config_default(struct mh_diffusion_config *config)
         .diffusion_m2ps = 1.0f,
         .chi = 0.2f,
         .release_gps = 100.0f,
+        .release_drift = 0.05f,
         .additive_sd = 0.05f,
         .relative_sd = 0.05f,
         .turn_mps2 = 0.35f,
@@ -63,6 +71,14 @@ void mh_diffusion_config_default(struct mh_diffusion_config *config)
         .region = {-1000000000, 1000000000, -1000000000, 1000000000},
     };
     *config = nominal;
+}
+
+/* The release rate may go on to change as much as it has lately: a steady one is known the better for it, and helps the position. */
+static void learn_rate_change(struct mh_diffusion *track, mh_real change)
+{
+    track->rate_change2 += 0.1f * (squared(mh_min(change, 0.2f)) - track->rate_change2);
+    track->fit.log_rate_step_sd = mh_max(0.01f, mh_sqrt(track->rate_change2));
+    track->fit.log_rate_drift = mh_max(track->config.release_drift, mh_sqrt(track->rate_change2));
 }
 
 static bool within(mh_real value, mh_real low, mh_real high) { return value >= low && value <= high; }
@@ -86,6 +102,8 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     track->tracking = false;
     track->silent = 0;
     track->level = 1.0f;
+    track->rate_change2 = 0.0f;
+    track->usual_misfit = 0.0f;
     track->density = 0.0f;
     track->asked_radius = c->reach_m;
 
@@ -95,6 +113,7 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     fit->model.speed_mps = c->speed_mps;
     fit->model.interval = interval;
     fit->log_rate = mh_log(c->release_gps);
+    learn_rate_change(track, 0.0f);
     fit->bounds.log_rate_low = fit->log_rate - 3.0f;
     fit->bounds.log_rate_high = fit->log_rate + 3.0f;
     return MH_OK;
@@ -252,17 +271,18 @@ static struct mh_fit_knot *newest(struct mh_trail_fit *fit) { return &fit->knots
 static enum mh_status second_start(struct mh_trail_fit *fit, int from, struct mh_vec2 centre)
 {
     struct mh_fit_knot knots[MH_FIT_KNOTS];
-    const mh_real cost = fit->cost, log_rate = fit->log_rate;
+    const mh_real cost = fit->cost, log_rate = fit->log_rate, log_rate_step = fit->log_rate_step;
     for (int k = 0; k < fit->knot_count; k++) {
         knots[k] = fit->knots[k];
     }
     const struct mh_vec2 start = knots[from].place;
     for (int k = from + 1; k < fit->knot_count; k++) {
-        const mh_real share = (mh_real)(k - from) / (mh_real)(fit->knot_count - 1 - from);
+        const mh_real share = seconds(knots[from].time, knots[k].time) / seconds(knots[from].time, newest(fit)->time);
         fit->knots[k].place.x = start.x + share * (centre.x - start.x);
         fit->knots[k].place.y = start.y + share * (centre.y - start.y);
     }
     fit->log_rate = fit->prior_log_rate;
+    fit->log_rate_step = 0.0f;
     if (mh_trail_fit_solve(fit) == MH_OK && fit->cost < cost) {
         return MH_OK;
     }
@@ -270,25 +290,36 @@ static enum mh_status second_start(struct mh_trail_fit *fit, int from, struct mh
         fit->knots[k] = knots[k];
     }
     fit->log_rate = log_rate;
+    fit->log_rate_step = log_rate_step;
     return mh_trail_fit_assess(fit);
 }
 
-/* Count the signs that the fit follows something else than the source; true if that is enough. */
+/* Count the signs that the fit follows something else than the source; true if that is enough. What counts as a misfit follows what is usual, so
+ * that noise above what was assumed does not look like a lost source for ever. */
 static bool is_lost(struct mh_diffusion *track, const struct cluster *cluster)
 {
     const mh_real bad = misfit(&track->fit);
     const bool astray =
         cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > squared(track->config.reach_m);
-    track->doubtful = bad > 6.0f ? track->doubtful + 1 : 0;
+    const mh_real normal = mh_max(1.0f, track->usual_misfit);
+    track->usual_misfit += 0.05f * (mh_min(bad, 4.0f * normal) - track->usual_misfit);
+    track->doubtful = bad > 6.0f * normal ? track->doubtful + 1 : 0;
     track->astray = astray ? track->astray + 1 : 0;
-    return cluster->found && (track->doubtful >= 3 || bad > 24.0f || track->astray >= 4);
+    return cluster->found && (track->doubtful >= 3 || bad > 24.0f * normal || track->astray >= 4);
 }
 
-/* One instant of a track. `restarted` tells whether it began again. */
+/* One instant of a track, with measurements. After a gap a knot one interval back lets the source have turned meanwhile, and what it released
+ * there is as little known as before a start. `restarted` tells whether the track began again. */
 static enum mh_status follow(struct mh_diffusion *track, const struct instant *now, bool *restarted)
 {
     struct mh_trail_fit *fit = &track->fit;
+    const mh_tick interval = fit->model.interval;
+    const mh_real log_rate = fit->log_rate;
     const struct cluster cluster = find_cluster(track, now);
+    if (now->time - newest(fit)->time > interval + interval / 2) {
+        mh_trail_fit_advance(fit, now->time - interval);
+        track->since = 0;
+    }
     mh_trail_fit_advance(fit, now->time);
     track->since++;
     add_rows(track, now, track->asked, track->asked_radius);
@@ -301,19 +332,22 @@ static enum mh_status follow(struct mh_diffusion *track, const struct instant *n
             status = second_start(fit, 0, cluster.centre);
         }
     }
+    learn_rate_change(track, mh_abs(fit->log_rate - log_rate));
     *restarted = status == MH_OK && is_lost(track, &cluster);
     return *restarted ? restart(track, now, cluster.centre) : status;
 }
 
-/* Position, velocity and covariance `ahead` seconds after the newest knot, along the last segment; `steps` is that in intervals. The covariance is
- * the fit's plus that of the turns since, a change of velocity with each interval. */
-static void extrapolate(const struct mh_diffusion *track, mh_real ahead, struct mh_estimate *estimate)
+/* Position, velocity and covariance at `time`, not before the newest knot: along the last segment. The covariance is the fit's plus that of
+ * the turns since, one independent change of velocity an interval. */
+static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct mh_estimate *estimate)
 {
     const struct mh_trail_fit *fit = &track->fit;
     const int m = fit->knot_count - 1;
     const struct mh_fit_knot *last = &fit->knots[m], *older = last - 1;
-    const mh_real duration = (mh_real)mh_ticks_between(older->time, last->time) * (1.0f / (mh_real)MH_TICKS_PER_S);
-    const mh_real interval = (mh_real)fit->model.interval * (1.0f / (mh_real)MH_TICKS_PER_S);
+    const mh_real duration = seconds(older->time, last->time), ahead = seconds(last->time, time);
+    const mh_real interval = seconds(0, fit->model.interval);
+    estimate->origin = track->origin;
+    estimate->time = time;
     estimate->velocity.x = (last->place.x - older->place.x) / duration;
     estimate->velocity.y = (last->place.y - older->place.y) / duration;
     estimate->position.x =
@@ -347,15 +381,15 @@ static void ask(struct mh_diffusion *track, const struct instant *now)
         const mh_real density = (mh_real)answers / (MH_PI * squared(track->asked_radius));
         track->density = track->density > 0.0f ? track->density + 0.2f * (density - track->density) : density;
     }
-    struct mh_estimate next;
-    const mh_real interval = (mh_real)track->fit.model.interval * (1.0f / (mh_real)MH_TICKS_PER_S);
-    extrapolate(track, interval, &next);
-    const mh_real wanted =
+    struct mh_estimate last, next;
+    extrapolate(track, now->time, &last);
+    extrapolate(track, now->time + track->fit.model.interval, &next);
+    track->asked.x = last.position.x + 0.75f * (next.position.x - last.position.x);
+    track->asked.y = last.position.y + 0.75f * (next.position.y - last.position.y);
+    const mh_real known =
         track->density > 0.0f ? mh_sqrt(1.25f * (mh_real)MH_DIFFUSION_NEAR / (MH_PI * track->density)) : reach;
-    track->asked_radius = mh_clamp(wanted, 0.125f * reach, reach);
-    const struct mh_fit_knot *last = newest(&track->fit);
-    track->asked.x = last->place.x + 0.75f * (next.position.x - last->place.x);
-    track->asked.y = last->place.y + 0.75f * (next.position.y - last->place.y);
+    const mh_real spread = 2.0f * mh_sqrt(mh_max(next.covariance.xx, next.covariance.yy));
+    track->asked_radius = mh_clamp(mh_max(known, spread), 0.125f * reach, reach);
 }
 
 /* The measurement with the largest increment of at least chi; NULL if there is none. */
@@ -380,36 +414,39 @@ static size_t count_detections(const struct mh_diffusion *track, const struct in
     return detections;
 }
 
-/* The work of one instant, after which `tracking` tells whether there is a position. */
-static void work(struct mh_diffusion *track, const struct instant *now, bool *started)
+/* True if the instant says anything about where the source is: a strong increment anywhere, or a node near the source. */
+static bool is_heard(const struct mh_diffusion *track, const struct instant *now)
+{
+    for (size_t i = 0; i < now->count; i++) {
+        const struct mh_measurement *m = &now->measurements[i];
+        const struct mh_vec2 place = mh_place_relative(&m->place, &track->origin);
+        if (has_increment(m) &&
+            (is_strong(&track->config, m) || distance2(place, track->asked) <= squared(track->asked_radius))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Look for a source. */
+static enum mh_status detect(struct mh_diffusion *track, const struct instant *now)
 {
     const struct mh_measurement *peak = strongest(track, now);
-    enum mh_status status = MH_OK;
-    *started = false;
-    if (track->tracking) {
-        status = follow(track, now, started);
-    } else if (peak != NULL && count_detections(track, now) >= DETECTIONS_LEAST) {
-        track->origin = peak->place;
-        bound_region(track);
-        const struct cluster cluster = find_cluster(track, now);
-        if (cluster.found) {
-            track->fit.log_rate = mh_log(track->config.release_gps);
-            track->fit.prior_log_rate = track->fit.log_rate;
-            track->fit.log_rate_sd = 1.0f;
-            track->asked = cluster.centre;
-            track->asked_radius = track->config.reach_m;
-            status = start(track, now, cluster.centre);
-            *started = true;
-        }
+    if (peak == NULL || count_detections(track, now) < DETECTIONS_LEAST) {
+        return MH_NONE;
     }
-    track->silent = peak != NULL ? 0 : track->silent + 1;
-    track->tracking = track->tracking && status == MH_OK && track->silent <= MH_DIFFUSION_SILENCE;
-    if (track->tracking) {
-        if (track->fit.row_count > 0) {
-            track->level += 0.1f * (track->fit.data_cost / (mh_real)track->fit.row_count - track->level);
-        }
-        ask(track, now);
+    track->origin = peak->place;
+    const struct cluster cluster = find_cluster(track, now);
+    if (!cluster.found) {
+        return MH_NONE;
     }
+    bound_region(track);
+    track->fit.log_rate = mh_log(track->config.release_gps);
+    track->fit.prior_log_rate = track->fit.log_rate;
+    track->fit.log_rate_sd = 1.0f;
+    track->asked = cluster.centre;
+    track->asked_radius = track->config.reach_m;
+    return start(track, now, cluster.centre);
 }
 
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
@@ -422,24 +459,36 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     if (track->stepped && !mh_tick_before(track->time, time)) {
         return MH_ERR_TIME;
     }
-    bool started;
-    /* instants that were left out, up to half an interval before this one */
-    const mh_tick interval = track->fit.model.interval;
-    while (track->tracking && time - track->time > interval + interval / 2) {
-        const struct instant missed = {track->time + interval, NULL, 0};
-        work(track, &missed, &started);
-        track->time = missed.time;
-    }
     const struct instant now = {time, measurements, count};
-    work(track, &now, &started);
+    struct mh_trail_fit *fit = &track->fit;
     track->time = time;
     track->stepped = true;
+    track->tracking = track->tracking && time - newest(fit)->time <= MH_DIFFUSION_COAST * fit->model.interval;
+
+    uint8_t flags = 0;
+    if (!track->tracking) {
+        track->silent = 0;
+        track->tracking = detect(track, &now) == MH_OK;
+        flags = MH_ESTIMATE_STARTED;
+    } else if (is_heard(track, &now)) {
+        bool restarted = false;
+        track->silent = strongest(track, &now) != NULL ? 0 : track->silent + 1;
+        track->tracking = follow(track, &now, &restarted) == MH_OK && track->silent <= MH_DIFFUSION_SILENCE;
+        flags = restarted ? MH_ESTIMATE_STARTED : 0;
+    } else {
+        track->used = 0;
+        flags = MH_ESTIMATE_COASTED;
+    }
     if (!track->tracking) {
         return MH_NONE;
     }
-    struct mh_estimate result = {.origin = track->origin, .time = time, .measurements = track->used};
-    result.flags = (uint8_t)((started ? MH_ESTIMATE_STARTED : 0) | (track->used == 0 ? MH_ESTIMATE_COASTED : 0));
-    extrapolate(track, 0.0f, &result);
+    if (flags != MH_ESTIMATE_COASTED) {
+        track->level =
+            mh_max(LEVEL_MIN, (fit->cost + LEVEL_INERTIA * track->level) / ((mh_real)fit->row_count + LEVEL_INERTIA));
+    }
+    ask(track, &now);
+    struct mh_estimate result = {.measurements = track->used, .flags = flags};
+    extrapolate(track, time, &result);
     *estimate = result;
     return MH_OK;
 }
@@ -453,12 +502,11 @@ static enum mh_status predict(const void *state, mh_tick time, struct mh_estimat
     if (!track->tracking) {
         return MH_NONE;
     }
-    const int32_t ahead = mh_ticks_between(track->time, time);
-    if (ahead < 0) {
+    if (mh_tick_before(time, track->time)) {
         return MH_ERR_TIME;
     }
-    struct mh_estimate result = {.origin = track->origin, .time = time, .flags = MH_ESTIMATE_COASTED};
-    extrapolate(track, (mh_real)ahead * (1.0f / (mh_real)MH_TICKS_PER_S), &result);
+    struct mh_estimate result = {.flags = MH_ESTIMATE_COASTED};
+    extrapolate(track, time, &result);
     *estimate = result;
     return MH_OK;
 }

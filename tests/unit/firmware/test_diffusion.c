@@ -185,7 +185,7 @@ static void silence_is_honest_and_ends_the_track(void)
     struct mh_estimate e, gap;
     track_until(7, &e);
     mh_real before = sd(&e);
-    for (int i = 1; i <= MH_DIFFUSION_SILENCE; i++) {
+    for (int i = 1; i <= MH_DIFFUSION_COAST; i++) {
         TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_diffusion.step(&state, 7000u + (mh_tick)i * INTERVAL, NULL, 0, &e));
         TEST_ASSERT_EQUAL_INT(MH_ESTIMATE_COASTED, e.flags);
         TEST_ASSERT_EQUAL_INT(0, e.measurements);
@@ -197,7 +197,7 @@ static void silence_is_honest_and_ends_the_track(void)
         }
     }
     TEST_ASSERT_EQUAL_INT(MH_NONE,
-                          mh_tracker_diffusion.step(&state, 8000u + MH_DIFFUSION_SILENCE * INTERVAL, NULL, 0, &e));
+                          mh_tracker_diffusion.step(&state, 8000u + MH_DIFFUSION_COAST * INTERVAL, NULL, 0, &e));
 
     /* instants that the caller leaves out count the same */
     track_until(7, &e);
