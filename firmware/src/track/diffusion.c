@@ -91,9 +91,9 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
         return MH_ERR_ARGUMENT;
     }
     if (!within(c->diffusion_m2ps, 1e-4f, 1e3f) || !within(c->chi, 1e-3f, 1e3f) ||
-        !within(c->release_gps, 1e-3f, 1e5f) || !within(c->additive_sd, 1e-3f, 1e3f) ||
-        !within(c->relative_sd, 0.0f, 1.0f) || !within(c->turn_mps2, 1e-3f, 1e2f) ||
-        !within(c->speed_mps, 1e-2f, 1e3f) || !within(c->reach_m, 0.1f, 1e3f) ||
+        !within(c->release_gps, 1e-3f, 1e5f) || !within(c->release_drift, 1e-3f, 1.0f) ||
+        !within(c->additive_sd, 1e-3f, 1e3f) || !within(c->relative_sd, 0.0f, 1.0f) ||
+        !within(c->turn_mps2, 1e-3f, 1e2f) || !within(c->speed_mps, 1e-2f, 1e3f) || !within(c->reach_m, 0.1f, 1e3f) ||
         c->region.x_min_mm >= c->region.x_max_mm || c->region.y_min_mm >= c->region.y_max_mm) {
         return MH_ERR_ARGUMENT;
     }

@@ -116,6 +116,9 @@ static void configuration_is_checked(void)
     config.release_gps = 0.0f;
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_diffusion.init(&state, &config, INTERVAL));
     config.release_gps = 100.0f;
+    config.release_drift = INFINITY;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_diffusion.init(&state, &config, INTERVAL));
+    config.release_drift = 0.05f;
     config.region.x_max_mm = config.region.x_min_mm;
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_diffusion.init(&state, &config, INTERVAL));
 }
