@@ -39,10 +39,7 @@ static void transmit(void *context, mh_node_id to, const uint8_t *bytes, size_t 
     memcpy(frame->bytes, bytes, length);
 }
 /* no need to: the alarms ring every millisecond */
-static void set_alarm(void *context, mh_tick time)
-{
-    (void)context, (void)time;
-}
+static void set_alarm(void *context, mh_tick time) { (void)context, (void)time; }
 static void report(void *context, const struct mh_estimate *estimate)
 {
     const struct mh_vec2 true_m = source_at(estimate->time);

@@ -120,7 +120,7 @@ static int make_radio(struct network *network)
 {
     const struct scenario *scenario = network->config.scenario;
     const struct deployment *deployment = network->config.deployment;
-    double *x_m = malloc(2 * network->count * sizeof *x_m);
+    double *x_m = malloc(2 * sizeof *x_m * network->count);
     if (!x_m) {
         return -1;
     }

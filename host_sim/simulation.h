@@ -26,16 +26,17 @@ struct observer {
     void (*estimate)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
                      const struct truth *at_arrival);
     /* A frame goes on the air. */
-    void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes, size_t length);
+    void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
+                  size_t length);
 };
 
 /* Totals of a run, beside what the observer was told. */
 struct simulation_counters {
     uint64_t events;
-    uint64_t samples;                            /* sampling instants while the source was present */
-    uint64_t frames_sent[MH_MESSAGE_KINDS];      /* by kind */
+    uint64_t samples;                       /* sampling instants while the source was present */
+    uint64_t frames_sent[MH_MESSAGE_KINDS]; /* by kind */
     uint64_t frames_received, frames_lost;
-    struct mh_mote_counters motes;               /* summed over all motes */
+    struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
 };
 
@@ -43,7 +44,8 @@ struct simulation_counters {
  * looked at between events: when it becomes nonzero the run ends early. Returns 0, or -1 with one line in `error`: a
  * deployment file that cannot be read, a run that was stopped, no memory. Thread-safe: runs share nothing. */
 int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
-                   const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
+                   const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error,
+                   size_t error_size);
 
 /* Feed a recording through the same motes: its nodes and readings instead of the scenario's field, deployment and sensor.
  * scenario->sensor.interval_s is the sampling interval (0: recording->interval_s); sampling instants are the first reading's time and

@@ -145,6 +145,7 @@ static int sweep(struct command *command, struct session *session, struct scenar
         return 1;
     }
     const char *folder = session->out;
+    struct session one = *session;
     for (int pass = 0; pass < 2; pass++) {
         for (unsigned i = 0; i < scenario->sweep.values_count; i++) {
             const char *value = scenario->sweep.values[i];
@@ -160,10 +161,10 @@ static int sweep(struct command *command, struct session *session, struct scenar
             for (char *c = out + strlen(folder) + 1; pass == 1 && *c != '\0'; c++) {
                 *c = *c == '/' ? '_' : *c;
             }
-            session->out = out;
+            one.out = out;
             if (pass == 1) {
                 printf("%s = %s: ", scenario->sweep.key, value);
-                if (session_execute(command, session) != 0) {
+                if (session_execute(command, &one) != 0) {
                     return 1;
                 }
             }

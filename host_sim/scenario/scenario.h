@@ -102,7 +102,7 @@ int scenario_load(const char *path, struct scenario *scenario, char *error, size
 /* Set one key from text, as --set does: numbers, words, `source.points` as `x,y[,factor]; ...`, `sweep.values` as `a,
  * b, ...`. An unknown key's error names the nearest known one. Returns 0, or -1 with one line in `error` and the
  * scenario as it was. */
-int scenario_set(struct scenario *scenario, const char *key, const char *value, char *error, size_t error_size);
+int scenario_set(struct scenario *scenario, const char *path, const char *value, char *error, size_t error_size);
 
 /* What only holds between keys: at least four nodes, a path with its points, an outage inside the run, the sink in the
  * field. Returns 0, or -1 with one line in `error`; `name` stands for the file. */

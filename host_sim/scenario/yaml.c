@@ -274,7 +274,8 @@ static char *list_text(const char *name, const struct raw *raw, char *error, siz
         return NULL;
     }
     for (unsigned i = 0; i < raw->list_count; i++) {
-        strcat(strcat(text, i > 0 ? "," : ""), raw->list[i]);
+        const size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%s", i > 0 ? "," : "", raw->list[i]);
     }
     return text;
 }

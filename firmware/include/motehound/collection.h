@@ -20,11 +20,13 @@
 #include "motehound/protocol.h"
 
 struct mh_collection_config {
-    mh_tick beacon_period;  /* between the sink's rounds of beacons, ticks, 1,000 to 3,600,000 */
-    mh_tick beacon_wait;    /* longest wait before a beacon is relayed, ticks, 1 to 1,000; the radio should send many frames in it */
+    mh_tick beacon_period; /* between the sink's rounds of beacons, ticks, 1,000 to 3,600,000 */
+    mh_tick
+        beacon_wait; /* longest wait before a beacon is relayed, ticks, 1 to 1,000; the radio should send many frames in it */
     mh_tick request_wait;   /* longest wait before a request is relayed, ticks, 1 to 1,000 */
     uint8_t suppress_after; /* copies heard that make a relay needless, >= 1 */
-    uint32_t range_mm;      /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
+    uint32_t
+        range_mm; /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
 };
 
 #define MH_COLLECTION_SEEN 3 /* requests remembered, so that none is relayed twice */
@@ -34,15 +36,15 @@ struct mh_collection {
     const struct mh_collection_config *config;
     const struct mh_protocol_node *node;
     mh_node_id sink;
-    mh_node_id parent; /* next hop towards the sink */
-    uint16_t round;    /* newest heard (or, at the sink, begun) */
-    uint8_t hops;      /* to the sink; 0 there */
-    bool joined;       /* sink, parent, round and hops are known */
-    bool stale;        /* ... but two rounds have not come */
-    bool tracking;     /* the sink follows a track */
+    mh_node_id parent;                /* next hop towards the sink */
+    uint16_t round;                   /* newest heard (or, at the sink, begun) */
+    uint8_t hops;                     /* to the sink; 0 there */
+    bool joined;                      /* sink, parent, round and hops are known */
+    bool stale;                       /* ... but two rounds have not come */
+    bool tracking;                    /* the sink follows a track */
     bool beacon_waits, request_waits; /* to be relayed at ... */
     mh_tick beacon_time, request_time;
-    mh_tick upkeep_time; /* the sink's next round; elsewhere when to ask the neighbours for a path */
+    mh_tick upkeep_time;                   /* the sink's next round; elsewhere when to ask the neighbours for a path */
     uint8_t beacon_copies, request_copies; /* heard meanwhile */
     mh_request_t request;                  /* the one that waits */
     struct {
@@ -50,7 +52,8 @@ struct mh_collection {
         mh_tick time;
     } seen[MH_COLLECTION_SEEN];
     uint8_t seen_count, seen_next;
-    uint16_t dropped; /* reports that had come MH_HOPS_MAX hops, came back to their origin, or found no path; saturates */
+    uint16_t
+        dropped; /* reports that had come MH_HOPS_MAX hops, came back to their origin, or found no path; saturates */
 };
 
 extern const struct mh_protocol mh_protocol_collection;

@@ -80,7 +80,8 @@
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
 #endif
 #if MH_KALMAN_STATES_MAX < 4 || MH_KALMAN_STATES_MAX > 16
-#error "MH_KALMAN_STATES_MAX must be 4 to 16: the trackers need four; the work grows with the cube, the stack with the square"
+#error                                                                                                                 \
+    "MH_KALMAN_STATES_MAX must be 4 to 16: the trackers need four; the work grows with the cube, the stack with the square"
 #endif
 
 #endif

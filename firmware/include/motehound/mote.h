@@ -26,23 +26,23 @@ struct mh_port {
 struct mh_mote_config {
     mh_node_id id; /* below MH_BROADCAST, unique in the network */
     struct mh_place place;
-    const struct mh_sensor_config *sensor;   /* NULL on a mote without a sensor */
-    const struct mh_head_config *head;       /* NULL on a mote that does not compute */
+    const struct mh_sensor_config *sensor; /* NULL on a mote without a sensor */
+    const struct mh_head_config *head;     /* NULL on a mote that does not compute */
     const struct mh_protocol *protocol;
     const void *protocol_config;
-    void *protocol_state;                    /* protocol->state_size bytes */
-    struct mh_head *head_state;              /* with head */
+    void *protocol_state;       /* protocol->state_size bytes */
+    struct mh_head *head_state; /* with head */
 };
 
 struct mh_mote_counters {
-    uint32_t readings;           /* taken */
-    uint32_t readings_refused;   /* out of range, out of time */
+    uint32_t readings;         /* taken */
+    uint32_t readings_refused; /* out of range, out of time */
     uint32_t readings_repeated;
-    uint32_t reports;            /* measurements handed to the protocol ... */
-    uint32_t reports_asked;      /* ... of these, only because a head asked */
-    uint32_t reports_no_route;   /* ... of these, lost for want of a next hop */
+    uint32_t reports;          /* measurements handed to the protocol ... */
+    uint32_t reports_asked;    /* ... of these, only because a head asked */
+    uint32_t reports_no_route; /* ... of these, lost for want of a next hop */
     uint32_t frames_sent;
-    uint32_t frames_received;    /* sound ones */
+    uint32_t frames_received; /* sound ones */
     uint32_t frames_corrupt;
     uint32_t frames_unknown;
 };
@@ -54,14 +54,14 @@ struct mh_mote {
     void *port_context;
     struct mh_protocol_node node;
     struct mh_sensor sensor;
-    bool tracking;              /* the network follows a track */
-    bool asked;                 /* the sample of asked_time is to be reported, whatever it is */
+    bool tracking; /* the network follows a track */
+    bool asked;    /* the sample of asked_time is to be reported, whatever it is */
     mh_tick asked_time;
-    mh_tick protocol_alarm;     /* when the protocol's timer() is due ... */
-    bool protocol_alarm_set;    /* ... if it is */
-    mh_tick alarm;              /* as last told to the port ... */
-    bool alarm_set;             /* ... if ever: the earlier of the protocol's and the head's */
-    bool may_sleep;             /* as last told to the port */
+    mh_tick protocol_alarm;  /* when the protocol's timer() is due ... */
+    bool protocol_alarm_set; /* ... if it is */
+    mh_tick alarm;           /* as last told to the port ... */
+    bool alarm_set;          /* ... if ever: the earlier of the protocol's and the head's */
+    bool may_sleep;          /* as last told to the port */
     struct mh_mote_counters counters;
 };
 

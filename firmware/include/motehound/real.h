@@ -29,7 +29,7 @@ static inline bool mh_finite(mh_real a) { return mh_abs(a) <= 3.4e38f; }
 typedef int32_t mh_q20;
 
 #define MH_Q20_ONE ((mh_q20)1 << 20)
-#define MH_Q20(constant) ((mh_q20)((constant) * 1048576.0f)) /* for literals: folded by the compiler */
+#define MH_Q20(constant) ((mh_q20)((constant)*1048576.0f)) /* for literals: folded by the compiler */
 
 static inline mh_real mh_q20_to_real(mh_q20 a) { return (mh_real)a * (1.0f / 1048576.0f); }
 

@@ -16,13 +16,14 @@ struct mh_reading {
 };
 
 struct mh_sensor_config {
-    int32_t zero_counts;   /* counts of a quantity of zero */
-    int32_t q20_per_count; /* the quantity of one count, Q11.20, >= 1 (1: an ideal converter that gives Q11.20 itself) */
-    int32_t counts_min;    /* readings outside counts_min..counts_max are refused; */
-    int32_t counts_max;    /* INT32_MIN and INT32_MAX: no limit */
-    mh_tick interval;      /* between samples, 1 to 3,600,000; jitter of up to a quarter of it is tolerated */
-    mh_q20 threshold;      /* chi: report when increment >= chi, or value > chi while nothing is tracked */
-    bool report_always;    /* report every reading (ranges), whatever chi says */
+    int32_t zero_counts; /* counts of a quantity of zero */
+    int32_t
+        q20_per_count;  /* the quantity of one count, Q11.20, >= 1 (1: an ideal converter that gives Q11.20 itself) */
+    int32_t counts_min; /* readings outside counts_min..counts_max are refused; */
+    int32_t counts_max; /* INT32_MIN and INT32_MAX: no limit */
+    mh_tick interval;   /* between samples, 1 to 3,600,000; jitter of up to a quarter of it is tolerated */
+    mh_q20 threshold;   /* chi: report when increment >= chi, or value > chi while nothing is tracked */
+    bool report_always; /* report every reading (ranges), whatever chi says */
 };
 
 /* A sample that was taken. */

@@ -15,15 +15,15 @@
 /* One position of the target. Coordinates are metres relative to `origin`. */
 struct mh_estimate {
     struct mh_place origin;
-    mh_tick time;               /* the sampling instant the estimate belongs to */
-    struct mh_vec2 position;    /* the tracker's answer at `time` */
-    struct mh_vec2 velocity;    /* m/s */
-    struct mh_sym2 covariance;  /* of position, m2; all zero where the tracker states none */
-    struct mh_vec2 raw;         /* the position before filtering; equals position where there is no such thing */
-    mh_real age;                /* seconds: the position belongs to time - age where the tracker says so (Luo's tau), else 0 */
-    uint16_t measurements;      /* how many measurements were used */
+    mh_tick time;              /* the sampling instant the estimate belongs to */
+    struct mh_vec2 position;   /* the tracker's answer at `time` */
+    struct mh_vec2 velocity;   /* m/s */
+    struct mh_sym2 covariance; /* of position, m2; all zero where the tracker states none */
+    struct mh_vec2 raw;        /* the position before filtering; equals position where there is no such thing */
+    mh_real age; /* seconds: the position belongs to time - age where the tracker says so (Luo's tau), else 0 */
+    uint16_t measurements; /* how many measurements were used */
     uint8_t target;
-    uint8_t flags;              /* MH_ESTIMATE_* */
+    uint8_t flags; /* MH_ESTIMATE_* */
 };
 
 enum {

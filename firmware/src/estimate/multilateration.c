@@ -59,7 +59,7 @@ static struct pass descend(const struct problem *problem, struct mh_vec2 *positi
 {
     struct pass best = linearise(problem, *position);
     mh_real damping = 1e-3f;
-    for (uint8_t i = 1; i < ITERATIONS; i++) {
+    for (int i = 1; i < ITERATIONS; i++) {
         const mh_real ridge = damping * (best.normal.xx + best.normal.yy);
         const mh_real xx = best.normal.xx + ridge;
         const mh_real yy = best.normal.yy + ridge;
@@ -114,11 +114,11 @@ enum mh_status mh_multilaterate(const struct mh_measurement *ranges, size_t coun
     struct problem problem = {ranges, count, origin, height_m, sd_m, scale};
     struct pass best = {.cost = 0};
     struct mh_vec2 position = centre;
-    for (uint8_t i = 0; i < STARTS; i++) {
+    for (int i = 0; i < STARTS; i++) {
         struct mh_vec2 candidate = {centre.x + mean * directions[i].x, centre.y + mean * directions[i].y};
         struct pass pass = best;
         problem.scale = scale * (COARSER * COARSER * COARSER * COARSER);
-        for (uint8_t stage = 0; stage < STAGES; stage++) {
+        for (int stage = 0; stage < STAGES; stage++) {
             pass = descend(&problem, &candidate);
             problem.scale *= 1.0f / COARSER;
         }

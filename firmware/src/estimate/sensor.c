@@ -3,10 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-static mh_q20 saturate(int64_t a)
-{
-    return a > INT32_MAX ? INT32_MAX : a < INT32_MIN ? INT32_MIN : (mh_q20)a;
-}
+static mh_q20 saturate(int64_t a) { return a > INT32_MAX ? INT32_MAX : a < INT32_MIN ? INT32_MIN : (mh_q20)a; }
 
 /* |later - earlier - nominal|, without overflow for any ticks. */
 static uint32_t deviation(mh_tick earlier, mh_tick later, mh_tick nominal)

@@ -101,10 +101,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
     return MH_ERR_CAPACITY;
 }
 
-mh_tick mh_head_deadline(const struct mh_head *head)
-{
-    return head->instant + head->config->window;
-}
+mh_tick mh_head_deadline(const struct mh_head *head) { return head->instant + head->config->window; }
 
 enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate)
 {

@@ -4,15 +4,9 @@
 
 #define PLACE_LIMIT_MM 1000000000
 
-static bool on_the_map(int32_t mm)
-{
-    return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM;
-}
+static bool on_the_map(int32_t mm) { return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM; }
 
-static void *protocol_state(const struct mh_mote *mote)
-{
-    return mote->config->protocol_state;
-}
+static void *protocol_state(const struct mh_mote *mote) { return mote->config->protocol_state; }
 
 /* One alarm of the port serves the protocol's timer and the head's deadline. The port hears of it when it changes, and after
  * an alarm, which has used it up. */

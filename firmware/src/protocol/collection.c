@@ -184,9 +184,10 @@ static void consider_request(struct mh_collection *c, mh_tick now, const mh_requ
         return;
     }
     const uint32_t progress = from_here < from_sender ? from_sender - from_here : 0;
-    const uint32_t missing = progress < range ? range - progress : 0;
-    /* the square root spreads the few that are nearly the best */
-    mh_tick wait = (mh_tick)((uint64_t)c->config->request_wait * root((uint64_t)missing * range) / range);
+    mh_tick wait = 0;
+    if (progress < range) { /* the square root spreads the few that are nearly the best */
+        wait = (mh_tick)((uint64_t)c->config->request_wait * root((uint64_t)(range - progress) * range) / range);
+    }
     /* progress at least cos 30 degrees of the hop: such nodes stand in a sector as wide as its radius, so they hear each other */
     const bool ahead = (uint64_t)8 * progress >= (uint64_t)7 * distance_mm(&c->node->place, sender);
     if (!ahead && from_here > interest->radius_mm) {

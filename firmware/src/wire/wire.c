@@ -44,10 +44,7 @@ static int decode_body(struct mh_message *message, const uint8_t *bytes, int len
     }
 }
 
-static bool on_the_map(int32_t mm)
-{
-    return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM;
-}
+static bool on_the_map(int32_t mm) { return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM; }
 
 static bool sound(const struct mh_message *message)
 {
