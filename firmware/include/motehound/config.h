@@ -18,7 +18,7 @@
 
 /* The tracker `diffusion`. Window: sampling instants whose positions are estimated together. Near and strong: measurements used of an instant,
  * those nearest to the source and those with the most significant increments, 24 bytes each and instant of the window. Trail: older positions
- * that are kept, 16 bytes each. In all 2.8 kB of state, 1.6 kB with the small values of the AVR; time grows with rows and the cube of the window. */
+ * that are kept, 16 bytes each. In all 2.9 kB of state, 1.7 kB with the small values of the AVR; time grows with rows and the cube of the window. */
 #ifndef MH_DIFFUSION_WINDOW
 #define MH_DIFFUSION_WINDOW 3
 #endif
@@ -36,6 +36,7 @@
 #ifndef MH_DIFFUSION_TRAIL
 #define MH_DIFFUSION_TRAIL (MH_DIFFUSION_SMALL ? 14 : 60)
 #endif
+
 /* Its track ends after so many intervals without any measurement near it, or so many instants in succession with measurements but without a
  * significant increment. */
 #ifndef MH_DIFFUSION_COAST

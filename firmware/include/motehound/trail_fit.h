@@ -84,7 +84,7 @@ void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time);
 /* One more row, at the time of the newest knot. Errors: MH_ERR_CAPACITY. */
 enum mh_status mh_trail_fit_add_row(struct mh_trail_fit *fit, struct mh_vec2 node, mh_real increment, mh_real variance);
 
-/* Improve knots and log_rate from where they are; sets cost, data_cost and covariance. At most 6 steps of at most 4 trials, so at most 26
+/* Improve knots and log_rate from where they are; sets cost, data_cost and covariance. At most 6 steps of at most 4 trials, so at most 25
  * evaluations of the model; one takes up to 8 exponentials for each row and each segment that the row sees, twice.
  * Errors: MH_ERR_SINGULAR (not finite or not positive definite; knots and log_rate as before, covariance lost). */
 enum mh_status mh_trail_fit_solve(struct mh_trail_fit *fit);

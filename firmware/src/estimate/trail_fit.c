@@ -6,6 +6,7 @@
 #define TURN_HUBER 1.5f
 #define LOG_RATE_STEP_MAX 1.0f
 #define BASE_ERROR 0.1f     /* the frozen trail's share is wrong by about a tenth of itself */
+#define ROUNDING 1.0001f    /* on a diagonal: keeps a nearly singular block positive definite */
 #define KNOT_DRIFT_M2 1e-4f /* what the linearisation forgets, for each instant */
 
 static mh_real seconds(mh_tick earlier, mh_tick later)
@@ -302,6 +303,10 @@ void mh_trail_fit_block(const struct mh_trail_fit *fit, int i, int j, mh_real bl
         for (int b = 0; b < 2; b++) {
             block[2 * a + b] = fit->covariance[mh_packed_index(2 * i + a, 2 * j + b)];
         }
+    }
+    if (i == j) {
+        block[0] *= ROUNDING;
+        block[3] *= ROUNDING;
     }
 }
 

@@ -221,6 +221,40 @@ static void the_source_is_found_again_after_a_gap(void)
     TEST_ASSERT_FLOAT_WITHIN(0.15f, 0.0f, error_at(&e, 11.0f));
 }
 
+/* What an emulator does in a few seconds. */
+#if defined(__AVR__) || defined(__arm__) || defined(__riscv)
+#define RANDOM_INSTANTS 3
+#else
+#define RANDOM_INSTANTS 300
+#endif
+
+static void senseless_input_gives_sound_output(void)
+{
+    uint32_t random = 12345;
+    mh_tick time = 0;
+    begin();
+    for (int k = 0; k < RANDOM_INSTANTS; k++) {
+        for (int i = 0; i < REPORTS_MAX; i++) {
+            struct mh_measurement *m = &reports[i];
+            int32_t *fields[4] = {&m->place.x_mm, &m->place.y_mm, &m->value, &m->increment};
+            for (int f = 0; f < 4; f++) {
+                random = random * 1664525u + 1013904223u;
+                *fields[f] = (int32_t)(random >> 1) >> (f < 2 ? 16 : (random >> 8) % 14u);
+            }
+            m->flags = (random >> 16) % 5u > 0 ? MH_MEASUREMENT_HAS_INCREMENT : 0;
+        }
+        time += INTERVAL * (k % 7 == 6 ? 5u : 1u);
+        struct mh_estimate e;
+        const enum mh_status status = mh_tracker_diffusion.step(&state, time, reports, REPORTS_MAX, &e);
+        TEST_ASSERT_TRUE(status == MH_OK || status == MH_NONE);
+        if (status == MH_OK) {
+            TEST_ASSERT_TRUE(mh_finite(e.position.x) && mh_finite(e.position.y) && mh_finite(e.velocity.x));
+            TEST_ASSERT_TRUE(e.covariance.xx > 0.0f && mh_finite(e.covariance.xx + e.covariance.yy));
+            TEST_ASSERT_TRUE(e.covariance.xx * e.covariance.yy > e.covariance.xy * e.covariance.xy);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -229,6 +263,7 @@ int main(void)
     RUN_TEST(a_straight_path_is_followed_and_predicted);
     RUN_TEST(silence_is_honest_and_ends_the_track);
     RUN_TEST(the_source_is_found_again_after_a_gap);
+    RUN_TEST(senseless_input_gives_sound_output);
     port_exit(UNITY_END() > 0);
     return 0;
 }
