@@ -42,6 +42,12 @@ static void accumulate(mh_real *normal, mh_real *gradient, int first, int length
     }
 }
 
+/* The knot before the window; without meaning while the trail is empty. */
+static const struct mh_trail_knot *last_frozen(const struct mh_trail_fit *fit)
+{
+    return &fit->trail.knots[fit->trail.count > 0 ? fit->trail.count - 1 : 0];
+}
+
 /* Release rate on the way to knot k. */
 static mh_real rate_of_segment(const struct mh_trail_fit *fit, int k)
 {
@@ -52,12 +58,13 @@ static mh_real rate_of_segment(const struct mh_trail_fit *fit, int k)
 static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row *row, const mh_real *rates, mh_real *j)
 {
     const int n = unknowns(fit);
+    mh_real released = 0.0f;
     for (int i = 0; i < n; i++) {
         j[i] = 0.0f;
     }
     for (int k = fit->trail.count > 0 ? 0 : 1; k < fit->knot_count; k++) {
         const struct mh_fit_knot *end = &fit->knots[k];
-        const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count > 0 ? fit->trail.count - 1 : 0];
+        const struct mh_trail_knot *frozen = last_frozen(fit);
         struct mh_segment segment = {k > 0 ? fit->knots[k - 1].place : frozen->place, end->place, 0.0f, 0.0f};
         const mh_tick start = k > 0 ? fit->knots[k - 1].time : frozen->time;
         struct mh_segment_field field = {0.0f, {0.0f, 0.0f}, {0.0f, 0.0f}};
@@ -68,7 +75,7 @@ static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row
         segment.age_b = seconds(end->time, row->time - fit->model.interval);
         mh_segment_add_field(&segment, row->node, fit->model.diffusion_m2ps, -1.0f, &field);
         const mh_real rate = rates[k];
-        j[n - 2] += rate * field.value;
+        released += rate * field.value;
         j[n - 1] += rate * field.value * (mh_real)(k + 1 - fit->knot_count);
         if (k > 0) {
             j[2 * k - 2] += rate * field.da.x;
@@ -77,7 +84,8 @@ static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row
         j[2 * k] += rate * field.db.x;
         j[2 * k + 1] += rate * field.db.y;
     }
-    return row->base + j[n - 2];
+    j[n - 2] = released;
+    return row->base + released;
 }
 
 /* One coordinate of a prior on the motion: coefficients c[0..length-1] of the knots from `first` on, every second unknown. */
@@ -110,7 +118,7 @@ static mh_real add_motion_prior(const struct mh_trail_fit *fit, int k, mh_real *
         const mh_real coefficients[2] = {-c, c};
         return add_motion(fit, normal, gradient, 0, 2, coefficients, none);
     }
-    const struct mh_trail_knot *frozen = &fit->trail.knots[fit->trail.count > 0 ? fit->trail.count - 1 : 0];
+    const struct mh_trail_knot *frozen = last_frozen(fit);
     const mh_real before = seconds(k > 1 ? fit->knots[k - 2].time : frozen->time, fit->knots[k - 1].time);
     const mh_real scale = 1.0f / (fit->model.turn_mps2 * mh_sqrt(0.5f * (before + after) * interval_s(fit)));
     const mh_real coefficients[3] = {scale / before, -scale / before - scale / after, scale / after};
@@ -329,7 +337,7 @@ static void slide(struct mh_trail_fit *fit)
 {
     const struct mh_trail_knot frozen = {fit->knots[0].place, fit->knots[0].time, rate_of_segment(fit, 0)};
     const bool has_segment = fit->trail.count > 0;
-    const struct mh_trail_knot newest = fit->trail.knots[has_segment ? fit->trail.count - 1 : 0];
+    const struct mh_trail_knot newest = *last_frozen(fit);
 
     mh_real block[4];
     mh_trail_fit_block(fit, 1, 1, block);
