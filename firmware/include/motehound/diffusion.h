@@ -26,16 +26,16 @@
 
 /* All finite and in the range given, or init() fails. */
 struct mh_diffusion_config {
-    mh_real diffusion_m2ps;       /* D, 1e-4 to 1e3; nominal 1 */
-    mh_real chi;                  /* significant concentration, g/m2, 1e-3 to 1e3; nominal 0.2 */
-    mh_real release_gps;          /* expected release rate, 1e-3 to 1e5, right to a factor of 20; nominal 100 */
-    mh_real release_drift;        /* sd of its relative change in an interval at least, 1e-3 to 1; nominal 0.05 */
-    mh_real additive_sd;          /* of a reading, g/m2, 1e-3 to 1e3; nominal 0.05, deliberately generous */
-    mh_real relative_sd;          /* of a reading, as a share of it, 0 to 1; nominal 0.05, deliberately generous */
-    mh_real turn_mps2;            /* sd of the acceleration, 1e-3 to 1e2; nominal 0.35. Sharper turns count as outliers */
-    mh_real speed_mps;            /* sd of the velocity at the start, 1e-2 to 1e3; nominal 3 */
-    mh_real reach_m;              /* how far off an increment tells of the newest release, 0.1 to 1e3; nominal 8 */
-    struct mh_region region;      /* the source stays within; nominal: unbounded (+- 1e9 mm) */
+    mh_real diffusion_m2ps;  /* D, 1e-4 to 1e3; nominal 1 */
+    mh_real chi;             /* significant concentration, g/m2, 1e-3 to 1e3; nominal 0.2 */
+    mh_real release_gps;     /* expected release rate, 1e-3 to 1e5, right to a factor of 20; nominal 100 */
+    mh_real release_drift;   /* sd of its relative change in an interval at least, 1e-3 to 1; nominal 0.05 */
+    mh_real additive_sd;     /* of a reading, g/m2, 1e-3 to 1e3; nominal 0.05, deliberately generous */
+    mh_real relative_sd;     /* of a reading, as a share of it, 0 to 1; nominal 0.05, deliberately generous */
+    mh_real turn_mps2;       /* sd of the acceleration, 1e-3 to 1e2; nominal 0.35. Sharper turns count as outliers */
+    mh_real speed_mps;       /* sd of the velocity at the start, 1e-2 to 1e3; nominal 3 */
+    mh_real reach_m;         /* how far off an increment tells of the newest release, 0.1 to 1e3; nominal 8 */
+    struct mh_region region; /* the source stays within; nominal: unbounded (+- 1e9 mm) */
 };
 
 struct mh_diffusion {
