@@ -414,6 +414,27 @@ static void a_dead_parent_is_replaced_in_the_next_round(void)
     }
 }
 
+/* Its rounds begin at 1 again, while the field has come to 20 and believes that there is a track. */
+static void a_sink_that_reboots_gets_its_tree_back(void)
+{
+    for (unsigned seed = 1; seed <= 3; seed++) {
+        deploy(500, 80000, seed, 0, 0);
+        net.script.tracks = true;
+        run_until(600000);
+        net.script.tracks = false;
+        net.sent[MH_MESSAGE_BEACON] = 0;
+        TEST_ASSERT_EQUAL(MH_OK, mh_mote_init(&net.motes[SINK], &net.configs[SINK], &port, &net.motes[SINK], net.now));
+        run_until(net.now + 3000);
+        for (unsigned i = 1; i < net.count; i++) {
+            if (net.bfs_hops[i] != UNREACHED) {
+                TEST_ASSERT_EQUAL_UINT16(net.states[SINK].round, net.states[i].round);
+                TEST_ASSERT_FALSE(net.motes[i].tracking);
+            }
+        }
+        TEST_ASSERT_LESS_THAN(500, net.sent[MH_MESSAGE_BEACON]);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -425,6 +446,7 @@ int main(void)
     RUN_TEST(a_change_of_tracking_reaches_everybody_at_once);
     RUN_TEST(losing_30_percent_of_the_frames_neither_loops_nor_splits);
     RUN_TEST(a_dead_parent_is_replaced_in_the_next_round);
+    RUN_TEST(a_sink_that_reboots_gets_its_tree_back);
     port_exit(UNITY_END() > 0);
     return 0;
 }

@@ -91,6 +91,11 @@ static void wait_to_relay_beacon(struct mh_collection *c, mh_tick now)
     c->beacon_time = now + 1 + spread(c, c->config->beacon_wait);
 }
 
+static int16_t rounds_newer(const struct mh_collection *c, const mh_beacon_t *beacon)
+{
+    return (int16_t)((uint16_t)beacon->round - c->round);
+}
+
 static bool is_better(const struct mh_collection *c, const mh_beacon_t *beacon)
 {
     const bool nearer = beacon->hops + 1 < c->hops;
@@ -100,8 +105,8 @@ static bool is_better(const struct mh_collection *c, const mh_beacon_t *beacon)
     if ((mh_node_id)beacon->sink != c->sink) {
         return nearer || c->stale;
     }
-    const int16_t rounds_newer = (int16_t)((uint16_t)beacon->round - c->round);
-    return rounds_newer == 0 ? nearer : rounds_newer > 0 || c->stale;
+    const int16_t newer = rounds_newer(c, beacon);
+    return newer == 0 ? nearer : newer > 0 || c->stale;
 }
 
 static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon)
@@ -120,16 +125,24 @@ static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon
     }
 }
 
+/* A sink that has been restarted counts from 1 while its field remembers more. Its neighbours answer with the round they know,
+ * as they answer a neighbour without a path, and the sink goes on from there; else the old tree would outlive it. */
 static void hear_beacon(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon)
 {
-    if ((mh_node_id)beacon->sink == MH_BROADCAST) { /* a neighbour without a path */
+    const bool of_my_sink = c->joined && (mh_node_id)beacon->sink == c->sink;
+    const bool begun_anew = of_my_sink && beacon->hops == 0 && rounds_newer(c, beacon) < 0;
+    if (c->node->is_head && of_my_sink) {
+        if (rounds_newer(c, beacon) > 0) {
+            c->round = (uint16_t)beacon->round;
+            begin_round(c, now);
+        }
+    } else if ((mh_node_id)beacon->sink == MH_BROADCAST || (begun_anew && !c->stale)) {
         if (c->joined && !c->stale && !c->beacon_waits) {
             wait_to_relay_beacon(c, now);
         }
     } else if (!c->node->is_head && beacon->hops < MH_HOPS_MAX && is_better(c, beacon)) {
         join(c, now, beacon);
-    } else if (c->beacon_waits && (mh_node_id)beacon->sink == c->sink && (uint16_t)beacon->round == c->round &&
-               beacon->hops <= c->hops) {
+    } else if (c->beacon_waits && of_my_sink && (uint16_t)beacon->round == c->round && beacon->hops <= c->hops) {
         c->beacon_waits = ++c->beacon_copies < c->config->suppress_after;
     }
 }

@@ -143,6 +143,26 @@ static void rounds_wrap(void)
     TEST_ASSERT_EQUAL_UINT32(6, state.parent);
 }
 
+/* The sink has rebooted: its neighbours tell it how far its rounds had come, and it goes on from there. */
+static void a_sink_that_begins_anew_is_told_its_round(void)
+{
+    hear_beacon(1, 1, 900, 0);
+    collection->timer(&state, saw.timer);
+    hear_beacon(5, 1, 899, 1); /* a relay that is late tells nothing */
+    TEST_ASSERT_FALSE(state.beacon_waits);
+    hear_beacon(1, 1, 2, 0);
+    TEST_ASSERT_TRUE(state.beacon_waits);
+    collection->timer(&state, saw.timer);
+    TEST_ASSERT_EQUAL_INT16(900, saw.message.as.beacon.round);
+    come_up(true);
+    hear_beacon(5, 10, 900, 1);
+    TEST_ASSERT_EQUAL(1, saw.sent);
+    TEST_ASSERT_EQUAL_INT16(901, saw.message.as.beacon.round);
+    hear_beacon(6, 10, 900, 1); /* the next neighbour's answer */
+    TEST_ASSERT_EQUAL(1, saw.sent);
+    TEST_ASSERT_EQUAL_UINT8(0, state.hops);
+}
+
 static void the_nearer_of_two_sinks_wins(void)
 {
     hear_beacon(5, 1, 7, 3);
@@ -293,8 +313,6 @@ static void the_sink_begins_rounds_and_takes_reports(void)
     TEST_ASSERT_EQUAL_INT16(round + 1, saw.message.as.beacon.round);
     TEST_ASSERT_EQUAL_UINT8(1, saw.message.as.beacon.tracking);
     TEST_ASSERT_EQUAL_UINT32(200 + 30000, saw.timer);
-    hear_beacon(5, 10, 900, 0); /* nobody tells the sink where the sink is */
-    TEST_ASSERT_EQUAL_UINT8(0, state.hops);
     collection->message(&state, 300, &report);
     TEST_ASSERT_EQUAL(1, saw.delivered);
     TEST_ASSERT_EQUAL(MH_OK, collection->ask(&state, 300, &interest, 1000));
@@ -309,6 +327,7 @@ int main(void)
     RUN_TEST(bad_configurations_are_refused);
     RUN_TEST(the_parent_has_the_fewest_hops_of_the_newest_round);
     RUN_TEST(rounds_wrap);
+    RUN_TEST(a_sink_that_begins_anew_is_told_its_round);
     RUN_TEST(the_nearer_of_two_sinks_wins);
     RUN_TEST(a_beacon_is_relayed_unless_others_do);
     RUN_TEST(a_node_without_a_path_asks_and_is_answered);
