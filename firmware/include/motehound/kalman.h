@@ -6,7 +6,7 @@
  * one update each; they need not belong to the same instant.
  *
  * Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, chapter V. Several filters may run side by
- * side: nothing is shared. Stack: 4 (n^2 + n (n + 1) / 2) bytes in predict, 8 n in update, and a few registers. */
+ * side: nothing is shared. Stack: 4 (n^2 + n (n + 1) / 2) bytes in predict, 8 n and a copy of the filter in update, and a few registers. */
 #ifndef MOTEHOUND_KALMAN_H
 #define MOTEHOUND_KALMAN_H
 
@@ -26,7 +26,7 @@ struct mh_kalman {
 
 /* Innovation gate: refuses a measurement whose innovation exceeds `sigmas` of its own standard deviations, but at most `patience` of
  * them in a row. The next one is believed: the covariance is widened until that innovation stands just at the gate, and the
- * update is made. So an outlier is kept out, and a filter that has lost its target is not locked out for good. */
+ * update is made, unless the widened covariance would overflow. So an outlier is kept out, and a filter that has lost its target is not locked out for good. */
 struct mh_gate {
     mh_real sigmas;   /* > 0 */
     uint8_t patience; /* >= 0 */
@@ -40,13 +40,13 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
 /* x = F x, P = F P F' + Q. F: n x n, row by row; Q: packed, positive semidefinite. A direction whose variance is lost in the
  * rounding of a larger one keeps 2^-21 of that one. Leading zeros of the rows of F cost nothing: about n (n + 1) (2 n + 10) / 6
  * multiplications for an upper triangular F, about n^2 (n + 4) for a full one; n divisions.
- * Errors: MH_ERR_NOT_FINITE (an input, or the result overflows). */
+ * Errors: MH_ERR_NOT_FINITE (an input, or the result overflows), MH_ERR_SINGULAR (F P F' + Q has a variance of 0). */
 enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q);
 
 /* Take one scalar z = h' x + noise, as `innovation` = z - h' x (for an EKF: z minus the predicted measurement, with h its
- * gradient at x), with noise variance R = `variance` > 0. gate may be NULL. 3 n^2 / 2 + 9 n / 2 multiplications, 2 n + 1 divisions.
- * Errors: MH_NONE (refused by the gate, which counts it; the filter is untouched), MH_ERR_NOT_FINITE (an input, or h' P h
- * overflows), MH_ERR_ARGUMENT (variance not above 0). */
+ * gradient at x), with noise variance R = `variance` >= 1.2e-38. gate may be NULL. 3 n^2 / 2 + 9 n / 2 multiplications, 2 n + 1 divisions.
+ * Errors: MH_NONE (refused by the gate, which counts it; the filter is untouched), MH_ERR_NOT_FINITE (an input, or the result is too
+ * large or too small for mh_real), MH_ERR_ARGUMENT (variance below its range). */
 enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_real innovation, mh_real variance,
                                 struct mh_gate *gate);
 

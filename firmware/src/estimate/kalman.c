@@ -5,6 +5,8 @@
 /* A pivot below this share of its variance is rounding: 8 units in the last place of a float. */
 #define PIVOT_FLOOR (1.0f / 2097152.0f)
 
+#define SMALLEST 1.2e-38f /* of the normal floats */
+
 /* P = U D U', packed, in place, last column first. A pivot that rounding has swallowed is an error, or with `raise` it is
  * put back to its floor. */
 static enum mh_status factor(uint8_t n, mh_real *P, bool raise)
@@ -117,11 +119,14 @@ static bool gate_passes(struct mh_gate *gate, struct mh_kalman *filter, mh_real 
 {
     const mh_real wanted = innovation * innovation / (gate->sigmas * gate->sigmas);
     if (wanted <= *predicted + variance) {
-        gate->refused = 0;
         return true;
     }
     const mh_real factor = (wanted - variance) / *predicted;
-    if (gate->refused < gate->patience || !mh_finite(factor)) {
+    mh_real largest = 0;
+    for (uint_fast8_t j = 0; j < filter->n; j++) {
+        largest = mh_max(largest, filter->ud[MH_PACKED(j, j)]);
+    }
+    if (gate->refused < gate->patience || !mh_finite(factor * largest)) {
         gate->refused = (uint8_t)(gate->refused < gate->patience ? gate->refused + 1 : gate->refused);
         return false;
     }
@@ -130,7 +135,6 @@ static bool gate_passes(struct mh_gate *gate, struct mh_kalman *filter, mh_real 
         g[j] *= factor;
     }
     *predicted *= factor;
-    gate->refused = 0;
     return true;
 }
 
@@ -138,6 +142,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
                                 struct mh_gate *gate)
 {
     const uint8_t n = filter->n;
+    const struct mh_kalman before = *filter;
     mh_real f[MH_KALMAN_STATES_MAX]; /* U' h */
     mh_real g[MH_KALMAN_STATES_MAX]; /* D f, which becomes P h column by column */
     mh_real predicted = 0;           /* h' P h */
@@ -151,7 +156,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
         g[j] = *u++ * sum;
         predicted += sum * g[j];
     }
-    if (!(variance > 0)) {
+    if (!(variance >= SMALLEST)) {
         return MH_ERR_ARGUMENT;
     }
     if (!mh_finite(predicted + variance) || !mh_finite(innovation)) {
@@ -162,6 +167,8 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
     }
     mh_real alpha = variance;
     mh_real inverse = 1.0f / variance;
+    /* P does not grow, so U stays below sqrt(P / D): it cannot overflow while every pivot is a normal number */
+    bool fits = true;
     mh_real *column = filter->ud;
     for (uint_fast8_t j = 0; j < n; j++) {
         if (f[j] != 0) {
@@ -171,6 +178,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
             alpha += f[j] * gain;
             inverse = 1.0f / alpha;
             column[j] *= ratio * inverse;
+            fits = fits && column[j] >= SMALLEST;
             for (uint_fast8_t i = 0; i < j; i++) {
                 const mh_real old = column[i];
                 column[i] = old + g[i] * lambda;
@@ -180,8 +188,17 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
         column += j + 1;
     }
     const mh_real scale = innovation * inverse;
+    mh_real sum = 0; /* finite only if every state is */
     for (uint_fast8_t j = 0; j < n; j++) {
         filter->x[j] += g[j] * scale;
+        sum += filter->x[j];
+    }
+    if (!fits || !mh_finite(sum)) {
+        *filter = before;
+        return MH_ERR_NOT_FINITE;
+    }
+    if (gate) {
+        gate->refused = 0;
     }
     return MH_OK;
 }

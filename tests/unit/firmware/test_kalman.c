@@ -197,6 +197,23 @@ static void bad_input_changes_nothing(void)
     TEST_ASSERT_EQUAL_MEMORY(&before, &filter, sizeof filter);
 }
 
+/* Finite inputs whose result is too large, or too small, for a float. */
+static void what_does_not_fit_changes_nothing(void)
+{
+    struct mh_kalman filter, before;
+    struct mh_gate gate = {.sigmas = 3, .patience = 1, .refused = 1};
+    const mh_real x[2] = {0, 0}, P[3] = {1e-10f, 0, 1e20f};
+    const mh_real first[2] = {1, 0}, second[2] = {0, 1}, small[2] = {1e-10f, 0}, large[2] = {1e19f, 0};
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_init(&filter, 2, x, P));
+    memcpy(&before, &filter, sizeof filter);
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_kalman_update(&filter, second, 0, 1e-40f, NULL));      /* 1 / R */
+    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_kalman_update(&filter, small, 3e38f, 1e-30f, NULL)); /* x */
+    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_kalman_update(&filter, large, 0, 1e-20f, NULL));     /* P */
+    TEST_ASSERT_EQUAL_INT(MH_NONE, mh_kalman_update(&filter, first, 1e8f, 1, &gate)); /* P, by widening */
+    TEST_ASSERT_EQUAL_MEMORY(&before, &filter, sizeof filter);
+    TEST_ASSERT_EQUAL_UINT8(1, gate.refused);
+}
+
 static void gate_keeps_outliers_out_but_not_for_good(void)
 {
     struct mh_kalman filter, before;
@@ -233,6 +250,7 @@ int main(void)
     RUN_TEST(diffuse_prior);
     RUN_TEST(constant_velocity_model);
     RUN_TEST(bad_input_changes_nothing);
+    RUN_TEST(what_does_not_fit_changes_nothing);
     RUN_TEST(gate_keeps_outliers_out_but_not_for_good);
     port_exit(UNITY_END() > 0);
     return 0;
