@@ -24,6 +24,7 @@ struct counter {
     const char *name;
     uint32_t address;
     int inside;
+    uint32_t return_address;
     uint16_t sp_at_entry;
     avr_cycle_count_t begin, total, min, max;
     unsigned long calls;
@@ -53,6 +54,17 @@ static void sleep_at_once(avr_t *avr, avr_cycle_count_t cycles)
 
 static uint16_t stack_pointer(const avr_t *avr) { return (uint16_t)(avr->data[R_SPL] | avr->data[R_SPH] << 8); }
 
+/* What the call that has just been made left on the stack, high byte lowest, in words. */
+static uint32_t return_address(const avr_t *avr, uint16_t sp)
+{
+    uint32_t words = 0;
+    for (int i = 1; i <= avr->address_size; i++) {
+        words = words << 8 | avr->data[sp + i];
+    }
+    return words * 2;
+}
+
+/* The two bytes of SP are written one after the other, so SP alone does not tell a return from a frame that is being removed. */
 static void count(struct counter *c, const avr_t *avr)
 {
     const uint16_t sp = stack_pointer(avr);
@@ -60,7 +72,8 @@ static void count(struct counter *c, const avr_t *avr)
         c->inside = 1;
         c->begin = avr->cycle;
         c->sp_at_entry = sp;
-    } else if (c->inside && sp > c->sp_at_entry) { /* the return address has been popped */
+        c->return_address = return_address(avr, sp);
+    } else if (c->inside && sp > c->sp_at_entry && avr->pc == c->return_address) {
         const avr_cycle_count_t taken = avr->cycle - c->begin;
         c->inside = 0;
         c->min = c->calls == 0 || taken < c->min ? taken : c->min;
