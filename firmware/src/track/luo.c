@@ -160,32 +160,36 @@ static bool leaves(struct mh_luo *luo, struct mh_vec2 position)
         return false;
     }
     const struct mh_region *region = &luo->config.region;
-    const int32_t margin = luo->armed ? 0 : luo->config.inside_mm;
-    const struct mh_place lowest = {region->x_min_mm + margin, region->y_min_mm + margin, 0};
-    const struct mh_place highest = {region->x_max_mm - margin, region->y_max_mm - margin, 0};
+    const struct mh_place lowest = {region->x_min_mm, region->y_min_mm, 0};
+    const struct mh_place highest = {region->x_max_mm, region->y_max_mm, 0};
     const struct mh_vec2 low = mh_place_relative(&lowest, &luo->origin);
     const struct mh_vec2 high = mh_place_relative(&highest, &luo->origin);
-    const bool inside = position.x >= low.x && position.x <= high.x && position.y >= low.y && position.y <= high.y;
+    const mh_real margin = luo->armed ? 0 : (mh_real)luo->config.inside_mm * 0.001f;
+    const bool inside = position.x >= low.x + margin && position.x <= high.x - margin && position.y >= low.y + margin &&
+                        position.y <= high.y - margin;
     const bool end = luo->armed && !inside;
     luo->armed = luo->armed || inside;
     return end;
 }
 
-/* Step 5 and the velocity: position number luo->count + 1 has been pre-estimated, `elapsed` seconds of tau after the one before. */
-static enum mh_status take(struct mh_luo *luo, struct mh_vec2 raw, mh_real elapsed, bool *filtered)
+/* Step 5 and the velocity: position number luo->count + 1 has been pre-estimated, `elapsed` seconds of tau after the one before. True
+ * if it was filtered. A step that the filter refuses, because the velocity is absurd after a wild pre-estimate, is left out like
+ * any other: the next two positions then give a velocity again. */
+static bool take(struct mh_luo *luo, struct mh_vec2 raw, mh_real elapsed)
 {
     const uint32_t n = luo->count < UINT32_MAX ? luo->count + 1 : luo->count;
     struct mh_sage_husa x = luo->x;
     struct mh_sage_husa y = luo->y;
-    *filtered = n > 2 && !same(raw, luo->raw[0]) && !same(raw, luo->raw[1]);
-    if (*filtered) {
+    bool filtered = n > 2 && !same(raw, luo->raw[0]) && !same(raw, luo->raw[1]);
+    if (filtered) {
         const mh_real weight = mh_sage_husa_weight(luo->config.forgetting, n);
         const struct mh_sage_husa_config *noise = &luo->config.filter;
-        if (mh_sage_husa_step(&x, noise, raw.x, elapsed * luo->velocity.x, weight) != MH_OK ||
-            mh_sage_husa_step(&y, noise, raw.y, elapsed * luo->velocity.y, weight) != MH_OK) {
-            return MH_NONE;
-        }
-    } else {
+        filtered = mh_sage_husa_step(&x, noise, raw.x, elapsed * luo->velocity.x, weight) == MH_OK &&
+                   mh_sage_husa_step(&y, noise, raw.y, elapsed * luo->velocity.y, weight) == MH_OK;
+    }
+    if (!filtered) {
+        x = luo->x;
+        y = luo->y;
         x.estimate = raw.x;
         y.estimate = raw.y;
     }
@@ -199,7 +203,7 @@ static enum mh_status take(struct mh_luo *luo, struct mh_vec2 raw, mh_real elaps
     luo->raw[1] = luo->raw[0];
     luo->raw[0] = raw;
     luo->count = n;
-    return MH_OK;
+    return filtered;
 }
 
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
@@ -234,10 +238,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     const struct mh_place origin = luo->count == 0 ? instant.reference->place : luo->origin;
     const struct mh_vec2 reference = mh_place_relative(&instant.reference->place, &origin);
     const struct mh_vec2 raw = {reference.x + answer.puff.position.x, reference.y + answer.puff.position.y};
-    bool filtered;
-    if (take(luo, raw, age_max - answer.puff.age, &filtered) != MH_OK) {
-        return MH_NONE;
-    }
+    const bool filtered = take(luo, raw, age_max - answer.puff.age);
     luo->origin = origin;
     luo->age = answer.puff.age;
     luo->since = 0;

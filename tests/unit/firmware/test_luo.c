@@ -209,6 +209,52 @@ static void nonlinear_finds_the_same_exact_puff(void)
     TEST_ASSERT_FLOAT_WITHIN(2e-3f, 0.8f, e.age);
 }
 
+/* Four nodes that claim to stand almost on a line through half the world put a position, and so the velocity, beyond what the
+ * filter takes. */
+static void a_wild_position_does_not_stop_the_track(void)
+{
+    static const struct mh_place claimed[4] = {
+        {-462162, -462086, 0}, {621533677, 621534918, 0}, {113909, 120488, 0}, {-698004414, -698003634, 0}};
+    static const mh_q20 increments[4] = {215733540, 1361603167, 1995745563, 704972666};
+    begin();
+    struct mh_estimate e;
+    (void)step(0, 0, &e);
+    read_puff(1.2f, 0.9f, 0.6f);
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(1000, NODES, &e));
+    for (uint8_t i = 0; i < 4; i++) {
+        measurements[i].place = claimed[i];
+        measurements[i].increment = increments[i];
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(2000, 4, &e));
+    TEST_ASSERT_TRUE(mh_abs(e.velocity.x) + mh_abs(e.velocity.y) > 1e9f);
+    for (mh_tick time = 3000; time <= 6000; time += 1000) {
+        read_puff(1.3f + (mh_real)time * 1e-4f, 0.9f, 0.6f);
+        TEST_ASSERT_EQUAL_INT(MH_OK, step(time, NODES, &e));
+    }
+    expect_place(1.9f, 0.9f, &e, e.raw);
+    TEST_ASSERT_FLOAT_WITHIN(0.2f, e.raw.x, e.position.x);
+    TEST_ASSERT_FLOAT_WITHIN(0.2f, e.raw.y, e.position.y);
+}
+
+/* The largest region and margin that init() takes, seen from the far end of the field. */
+static void the_largest_region_has_room(void)
+{
+    mh_luo_config_default(&config);
+    config.stop_outside = true;
+    config.inside_mm = 1000000000;
+    const struct mh_region region = {1000000000, 1000000000, 1000000000, 1000000000};
+    config.region = region;
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_luo.init(&luo, &config, 1000));
+    struct mh_estimate e;
+    (void)step(0, 0, &e);
+    read_puff(1.2f, 0.9f, 0.6f);
+    for (uint8_t i = 0; i < NODES; i++) {
+        measurements[i].place.x_mm -= corner.x_mm + 1000000000;
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(1000, NODES, &e));
+    TEST_ASSERT_FALSE(luo.armed);
+}
+
 static void bad_input(void)
 {
     begin();
@@ -246,6 +292,8 @@ int main(void)
     RUN_TEST(of_equal_readings_the_lowest_node_is_the_origin);
     RUN_TEST(ends_outside_after_having_been_inside);
     RUN_TEST(nonlinear_finds_the_same_exact_puff);
+    RUN_TEST(a_wild_position_does_not_stop_the_track);
+    RUN_TEST(the_largest_region_has_room);
     RUN_TEST(bad_input);
     port_exit(UNITY_END() > 0);
     return 0;
