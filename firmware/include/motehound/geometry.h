@@ -6,8 +6,11 @@
 
 #include <stdint.h>
 
+/* Largest size of a coordinate: 1,000 km, so that differences fit in 32 bits. */
+#define MH_COORDINATE_MAX_MM ((int32_t)1000000000)
+
 /* A place in the field's own frame, in millimetres: what a node knows of itself and what frames carry. Each
- * coordinate within +- 1e9 (1,000 km), so that differences fit in 32 bits. */
+ * coordinate within +- MH_COORDINATE_MAX_MM. */
 struct mh_place {
     int32_t x_mm, y_mm, z_mm;
 };
@@ -27,6 +30,9 @@ struct mh_region {
     int32_t x_min_mm, x_max_mm, y_min_mm, y_max_mm;
 };
 
+/* True if mm may be a coordinate of a place. */
+static inline bool mh_coordinate_valid(int32_t mm) { return mm >= -MH_COORDINATE_MAX_MM && mm <= MH_COORDINATE_MAX_MM; }
+
 /* True if the horizontal distance between a and b is at most radius_mm. Integers only. */
 static inline bool mh_place_within(const struct mh_place *a, const struct mh_place *b, uint32_t radius_mm)
 {
@@ -42,7 +48,7 @@ static inline struct mh_vec2 mh_place_relative(const struct mh_place *place, con
     return v;
 }
 
-/* origin + offset, rounded to the millimetre; z is the origin's. `offset` finite and within +- 1e6 m. */
+/* origin + offset, rounded to the millimetre; z is the origin's. Saturates at the range of a coordinate. */
 struct mh_place mh_place_from_offset(const struct mh_place *origin, struct mh_vec2 offset);
 
 #endif

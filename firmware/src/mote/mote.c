@@ -2,10 +2,6 @@
 
 #include <string.h>
 
-#define PLACE_LIMIT_MM 1000000000
-
-static bool on_the_map(int32_t mm) { return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM; }
-
 static void *protocol_state(const struct mh_mote *mote) { return mote->config->protocol_state; }
 
 /* One alarm of the port serves the protocol's timer and the head's deadline. The port hears of it when it changes, and after
@@ -126,8 +122,9 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
                             void *port_context, mh_tick now)
 {
     if (!mote || !config || !port || !port->transmit || !port->set_alarm || config->id >= MH_BROADCAST ||
-        !on_the_map(config->place.x_mm) || !on_the_map(config->place.y_mm) || !on_the_map(config->place.z_mm) ||
-        !config->protocol || !config->protocol_state || (config->head && (!config->head_state || !port->report))) {
+        !mh_coordinate_valid(config->place.x_mm) || !mh_coordinate_valid(config->place.y_mm) ||
+        !mh_coordinate_valid(config->place.z_mm) || !config->protocol || !config->protocol_state ||
+        (config->head && (!config->head_state || !port->report))) {
         return MH_ERR_ARGUMENT;
     }
     memset(mote, 0, sizeof *mote);

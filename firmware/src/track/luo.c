@@ -2,8 +2,6 @@
 
 #include "motehound/puff_fit.h"
 
-#define PLACE_MAX_MM 1000000000
-
 void mh_luo_config_default(struct mh_luo_config *config)
 {
     const struct mh_luo_config nominal = {
@@ -17,8 +15,6 @@ void mh_luo_config_default(struct mh_luo_config *config)
     mh_sage_husa_config_default(&config->filter);
 }
 
-static bool is_coordinate(int32_t mm) { return mm >= -PLACE_MAX_MM && mm <= PLACE_MAX_MM; }
-
 static enum mh_status init(void *state, const void *config, mh_tick interval)
 {
     struct mh_luo *luo = state;
@@ -28,11 +24,11 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     }
     /* written so that NaN fails */
     if (!(c->diffusion_m2ps >= 1e-6f && c->diffusion_m2ps <= 1e3f) || !(c->chi >= 0 && c->chi <= 2000.0f) ||
-        !(c->forgetting > 0 && c->forgetting < 1) || c->inside_mm < 0 || c->inside_mm > PLACE_MAX_MM) {
+        !(c->forgetting > 0 && c->forgetting < 1) || c->inside_mm < 0 || c->inside_mm > MH_COORDINATE_MAX_MM) {
         return MH_ERR_ARGUMENT;
     }
-    if (!is_coordinate(c->region.x_min_mm) || !is_coordinate(c->region.x_max_mm) ||
-        !is_coordinate(c->region.y_min_mm) || !is_coordinate(c->region.y_max_mm)) {
+    if (!mh_coordinate_valid(c->region.x_min_mm) || !mh_coordinate_valid(c->region.x_max_mm) ||
+        !mh_coordinate_valid(c->region.y_min_mm) || !mh_coordinate_valid(c->region.y_max_mm)) {
         return MH_ERR_ARGUMENT;
     }
     struct mh_sage_husa x;

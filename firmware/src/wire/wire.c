@@ -4,7 +4,6 @@
 
 #define FINGERPRINT_BYTES 8
 #define FCS_BYTES 2
-#define PLACE_LIMIT_MM 1000000000
 
 /* lcm-gen's T_encode and T_decode keep the type's fingerprint in a static variable. Its functions one level below, which the
  * generated code itself uses for nested types, touch nothing but their arguments. */
@@ -44,8 +43,6 @@ static int decode_body(struct mh_message *message, const uint8_t *bytes, int len
     }
 }
 
-static bool on_the_map(int32_t mm) { return mm >= -PLACE_LIMIT_MM && mm <= PLACE_LIMIT_MM; }
-
 static bool sound(const struct mh_message *message)
 {
     const mh_beacon_t *beacon = &message->as.beacon;
@@ -56,11 +53,12 @@ static bool sound(const struct mh_message *message)
         return beacon->sender != -1 && beacon->hops <= MH_HOPS_MAX && beacon->tracking <= 1;
     case MH_MESSAGE_REPORT:
         return report->sender != -1 && report->origin != -1 && report->hops <= MH_HOPS_MAX &&
-               on_the_map(report->x_mm) && on_the_map(report->y_mm) && on_the_map(report->z_mm);
+               mh_coordinate_valid(report->x_mm) && mh_coordinate_valid(report->y_mm) &&
+               mh_coordinate_valid(report->z_mm);
     default:
         return request->sender != -1 && request->origin != -1 && request->hops <= MH_HOPS_MAX &&
-               request->radius_mm >= 0 && on_the_map(request->x_mm) && on_the_map(request->y_mm) &&
-               on_the_map(request->sender_x_mm) && on_the_map(request->sender_y_mm);
+               request->radius_mm >= 0 && mh_coordinate_valid(request->x_mm) && mh_coordinate_valid(request->y_mm) &&
+               mh_coordinate_valid(request->sender_x_mm) && mh_coordinate_valid(request->sender_y_mm);
     }
 }
 

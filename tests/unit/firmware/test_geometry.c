@@ -17,6 +17,23 @@ static void offset_round_trip(void)
     TEST_ASSERT_FLOAT_WITHIN(0.0006f, offset.y, back.y);
 }
 
+static void places_stay_on_the_map(void)
+{
+    const struct mh_place origin = {900000000, -900000000, 0};
+    const struct mh_vec2 offsets[] = {{2e5f, -2e5f}, {3e6f, -3e6f}, {1e38f, -1e38f}, {INFINITY, -INFINITY}};
+    for (uint8_t i = 0; i < 4; i++) {
+        const struct mh_place place = mh_place_from_offset(&origin, offsets[i]);
+        TEST_ASSERT_EQUAL_INT32(MH_COORDINATE_MAX_MM, place.x_mm);
+        TEST_ASSERT_EQUAL_INT32(-MH_COORDINATE_MAX_MM, place.y_mm);
+    }
+    const struct mh_vec2 across = {-1.9e6f, 1.9e6f};
+    const struct mh_place place = mh_place_from_offset(&origin, across);
+    TEST_ASSERT_EQUAL_INT32(-MH_COORDINATE_MAX_MM, place.x_mm);
+    TEST_ASSERT_EQUAL_INT32(MH_COORDINATE_MAX_MM, place.y_mm);
+    TEST_ASSERT_TRUE(mh_coordinate_valid(MH_COORDINATE_MAX_MM));
+    TEST_ASSERT_FALSE(mh_coordinate_valid(-MH_COORDINATE_MAX_MM - 1));
+}
+
 static void within_includes_the_border(void)
 {
     const struct mh_place a = {0, 0, 0}, b = {3000, 4000, 99999};
@@ -28,6 +45,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(offset_round_trip);
+    RUN_TEST(places_stay_on_the_map);
     RUN_TEST(within_includes_the_border);
     port_exit(UNITY_END() > 0);
     return 0;
