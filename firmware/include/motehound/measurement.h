@@ -1,4 +1,5 @@
-/* What a sensor node contributes at one sampling instant, self-contained: the head needs no table of nodes. */
+/* What a sensor node contributes at one sampling instant, self-contained: the head needs no table of nodes; and whom a head asks
+ * for it. */
 #ifndef MOTEHOUND_MEASUREMENT_H
 #define MOTEHOUND_MEASUREMENT_H
 
@@ -21,6 +22,12 @@ struct mh_measurement {
     mh_q20 increment;      /* value - value one interval before, Eq. (8)/(13) of Luo; 0 unless flagged */
     uint8_t flags;         /* MH_MEASUREMENT_* */
     uint8_t target;        /* which target was measured where a sensor can tell, else 0 */
+};
+
+/* The nodes around a place, within a horizontal distance. */
+struct mh_interest {
+    struct mh_place centre;
+    uint32_t radius_mm;
 };
 
 #endif

@@ -7,7 +7,6 @@
 
 #include "motehound/measurement.h"
 #include "motehound/status.h"
-#include "motehound/tracker.h"
 #include "motehound/wire.h"
 
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */

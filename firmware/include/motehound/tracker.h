@@ -34,12 +34,6 @@ enum {
     MH_ESTIMATE_AGE_HIGH = 16 /* Luo: the bound age = largest age was active */
 };
 
-/* Where the tracker wants to hear from every node at the next sampling instant, silent ones too. */
-struct mh_interest {
-    struct mh_place centre;
-    uint32_t radius_mm;
-};
-
 struct mh_tracker {
     const char *name;
     size_t state_size;  /* bytes of the state that init() fills */
@@ -58,7 +52,7 @@ struct mh_tracker {
     /* Position expected at `time`, at or after the last step. Errors: MH_NONE (no track). */
     enum mh_status (*predict)(const void *state, mh_tick time, struct mh_estimate *estimate);
 
-    /* Whom to hear at the next instant. Errors: MH_NONE (nobody in particular). NULL if the tracker never asks. */
+    /* Where to hear every node, silent ones too, at the next instant. Errors: MH_NONE (nobody in particular). NULL if the tracker never asks. */
     enum mh_status (*interest)(const void *state, struct mh_interest *interest);
 };
 
