@@ -41,7 +41,7 @@ enum mh_status mh_least_squares_add(struct mh_least_squares *problem, const mh_r
 
 /* The minimiser z with low <= z[last] <= high; `bound` says whether a bound is active (a free minimiser that lies just on one is
  * free). If only the last unknown is undetermined it is put on `high`. Errors: MH_ERR_ARGUMENT (low > high, or NaN), MH_ERR_TOO_FEW
- * (fewer rows than unknowns), MH_ERR_SINGULAR (the other unknowns are not determined). */
+ * (fewer rows than unknowns), MH_ERR_SINGULAR (the other unknowns are not determined, or one is too large for mh_real). */
 enum mh_status mh_least_squares_solve(const struct mh_least_squares *problem, mh_real low, mh_real high, mh_real *z,
                                       enum mh_bound *bound);
 

@@ -86,13 +86,23 @@ enum mh_status mh_least_squares_solve(const struct mh_least_squares *problem, mh
         active = x < low ? MH_BOUND_LOW : x > high ? MH_BOUND_HIGH : MH_BOUND_NONE;
         x = mh_clamp(x, low, high);
     }
-    z[last] = x;
+    mh_real solution[MH_LEAST_SQUARES_UNKNOWNS];
+    solution[last] = x;
+    if (!mh_finite(x)) {
+        return MH_ERR_SINGULAR;
+    }
     for (uint8_t k = last; k-- > 0;) {
         mh_real sum = problem->r[k][n];
         for (uint8_t j = (uint8_t)(k + 1); j < n; j++) {
-            sum -= problem->r[k][j] * z[j];
+            sum -= problem->r[k][j] * solution[j];
         }
-        z[k] = sum / problem->r[k][k];
+        solution[k] = sum / problem->r[k][k];
+        if (!mh_finite(solution[k])) {
+            return MH_ERR_SINGULAR;
+        }
+    }
+    for (uint8_t k = 0; k < n; k++) {
+        z[k] = solution[k];
     }
     *bound = active;
     return MH_OK;

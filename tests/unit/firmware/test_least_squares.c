@@ -75,6 +75,23 @@ static void rank(void)
     TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_least_squares_solve(&problem, 0, 1, z, &bound));
 }
 
+static void a_solution_that_is_not_finite_is_none(void)
+{
+    struct mh_least_squares problem;
+    mh_real z[2] = {7, 7};
+    enum mh_bound bound = MH_BOUND_NONE;
+    mh_least_squares_begin(&problem, 2);
+    add(&problem, 1e-30f, 0, 1e15f); /* z = 1e45 */
+    add(&problem, 0, 1, 1);
+    TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_least_squares_solve(&problem, 0, 2, z, &bound));
+    mh_least_squares_begin(&problem, 2);
+    add(&problem, 1, 2, 3);
+    add(&problem, 2, 4, 6); /* undetermined, and no bound to put it on */
+    TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_least_squares_solve(&problem, 0, INFINITY, z, &bound));
+    TEST_ASSERT_EQUAL_FLOAT(7, z[0]);
+    TEST_ASSERT_EQUAL_FLOAT(7, z[1]);
+}
+
 static void bad_rows_change_nothing(void)
 {
     struct mh_least_squares problem;
@@ -97,6 +114,7 @@ int main(void)
     RUN_TEST(free_minimum);
     RUN_TEST(bounded_minimum);
     RUN_TEST(rank);
+    RUN_TEST(a_solution_that_is_not_finite_is_none);
     RUN_TEST(bad_rows_change_nothing);
     port_exit(UNITY_END() > 0);
     return 0;
