@@ -21,6 +21,7 @@ from .scenario import Array, Scenario
 ANYWHERE_SD_M = 1e3  # of a position of which nothing is known
 START_SD_M = 3.0  # of the first position and, per interval, of the first step
 RELEASE_SD_LN = 1.0  # of ln mu
+BLOCK = 256  # nodes worked on at a time, so that they stay in the cache
 FLOOR = 1e-3  # g/m2: standard deviation that every reading has at least
 
 
@@ -48,21 +49,24 @@ def sensitivities(scenario: Scenario, nodes: Array, knots: Array, last: int) -> 
     born = time - age
     origin = route.position(born)
     strength = weight * scenario.release(born) / (4.0 * np.pi * diffusion * age)
-    dx = nodes[:, None, 0] - origin[:, 0]
-    dy = nodes[:, None, 1] - origin[:, 1]
-    kernel = np.exp(-(dx**2 + dy**2) / (4.0 * diffusion * age)) * strength
     # A point of the path between two knots moves with both of them, by linear interpolation.
     segment = np.clip(np.searchsorted(knots, born, side="right") - 1, 0, last - 1)
     share = (born - knots[segment]) / (knots[segment + 1] - knots[segment])
     starts = np.flatnonzero(np.diff(segment, prepend=-1))
     owner = segment[starts]
-    slope = kernel / (2.0 * diffusion * age)
+    level = np.empty(len(nodes))
     gradient = np.zeros((len(nodes), last + 1, 2))
-    for axis, offset in enumerate((dx, dy)):
-        pull = slope * offset
-        gradient[:, owner + 1, axis] += np.add.reduceat(pull * share, starts, axis=1)
-        gradient[:, owner, axis] += np.add.reduceat(pull * (1.0 - share), starts, axis=1)
-    return kernel.sum(axis=1), gradient
+    for first in range(0, len(nodes), BLOCK):
+        rows = slice(first, first + BLOCK)
+        offsets = [nodes[rows, None, axis] - origin[:, axis] for axis in (0, 1)]
+        kernel = np.exp(-(offsets[0] ** 2 + offsets[1] ** 2) / (4.0 * diffusion * age)) * strength
+        level[rows] = kernel.sum(axis=1)
+        kernel /= 2.0 * diffusion * age
+        for axis, offset in enumerate(offsets):
+            pull = kernel * offset
+            gradient[rows, owner + 1, axis] += np.add.reduceat(pull * share, starts, axis=1)
+            gradient[rows, owner, axis] += np.add.reduceat(pull * (1.0 - share), starts, axis=1)
+    return level, gradient
 
 
 def reading_information(scenario: Scenario, level: Array) -> Array:

@@ -32,13 +32,13 @@ MEANING = {
     "frames_received": "receptions, one for each mote in range",
     "frames_lost": "receptions that failed",
     "readings": "samples taken by all motes",
-    "readings_refused": "samples that were no valid reading",
+    "readings_refused": "samples out of range or out of time",
     "reports": "readings that a mote reported",
     "reports_asked": "of these reported because the head asked",
-    "reports_no_route": "reports of motes that know no way to the head",
+    "reports_no_route": "of these lost for want of a next hop",
     "measurements": "reports that reached the head in time",
     "measurements_late": "reports that reached the head too late",
-    "measurements_overflowed": "reports for which the head had no room",
+    "measurements_overflowed": "reports that gave way to stronger ones for want of room",
 }
 HEADLINES = (
     ("position_median_m", "median error", "m"),

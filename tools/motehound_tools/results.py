@@ -178,7 +178,7 @@ def page(read: Read, bounds: Bounds, runs: int, bound_seeds: int) -> str:
 
 
 def write(program: Path, out: Path, markdown: Path, runs: int) -> None:
-    bound_seeds = 10 if runs >= 50 else 1
+    bound_seeds = 4 if runs >= 50 else 1
     console = Console(stderr=True)
     every = cases()
     opened: dict[str, Output] = {}
