@@ -26,6 +26,8 @@ static double seconds(const struct network *network, int64_t time)
     return network->config.start_s + (double)time / SIM_TIME_PER_S;
 }
 
+double network_time_s(const struct network *network) { return seconds(network, (int64_t)network->now); }
+
 static void push(struct network *network, sim_time time, uint32_t event)
 {
     if (event_queue_push(&network->queue, time, event)) {
@@ -59,7 +61,7 @@ static void transmit(void *context, uint32_t mote, mh_node_id destination, const
     count_kind(network, frame);
     if (observer->frame) {
         const mh_node_id sender = mote < deployment->count ? deployment->nodes[mote].id : network->sink_id;
-        observer->frame(observer->context, seconds(network, (int64_t)network->now), sender, destination, frame, length);
+        observer->frame(observer->context, network_time_s(network), sender, destination, frame, length);
     }
 }
 
@@ -99,7 +101,7 @@ static void report(void *context, uint32_t mote, const struct mh_estimate *estim
 {
     (void)mote;
     struct network *network = context;
-    network->config.report(network->config.context, seconds(network, (int64_t)network->now),
+    network->config.report(network->config.context, network_time_s(network),
                            seconds(network, time_of(network, estimate->time)), estimate);
 }
 
@@ -243,7 +245,7 @@ int network_run(struct network *network, sim_time end, const volatile sig_atomic
                 size_t error_size)
 {
     struct event event;
-    while (event_queue_pop(&network->queue, &event) && event.time <= end) {
+    while (event_queue_pop(&network->queue, &event) && event.time < end) {
         network->now = event.time;
         network->events++;
         const uint32_t index = event.content & UINT32_C(0x3FFFFFFF);
@@ -261,11 +263,11 @@ int network_run(struct network *network, sim_time end, const volatile sig_atomic
             break;
         }
         if (stop && *stop) {
-            snprintf(error, error_size, "stopped at %.3f s", seconds(network, (int64_t)network->now));
+            snprintf(error, error_size, "stopped at %.3f s", network_time_s(network));
             return -1;
         }
         if (network->out_of_memory) {
-            snprintf(error, error_size, "out of memory at %.3f s", seconds(network, (int64_t)network->now));
+            snprintf(error, error_size, "out of memory at %.3f s", network_time_s(network));
             return -1;
         }
     }

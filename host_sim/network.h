@@ -53,13 +53,16 @@ int network_make(struct network *network, const struct network_config *config, c
 
 void network_free(struct network *network);
 
+/* Now, as the observer is told: the time in seconds of an instant is the same number in all that it hears. */
+double network_time_s(const struct network *network);
+
 /* Have config.instant called at `time`. Returns 0, or -1 if there is no memory. */
 int network_schedule(struct network *network, sim_time time);
 
 /* Mote `mote` has a reading, now. Readings that it refuses it counts. */
 void network_reading(struct network *network, uint32_t mote, int32_t counts, uint8_t target);
 
-/* Let everything happen up to `end`. Returns 0, or -1 with one line in `error`: stopped, or out of memory. */
+/* Let everything happen that happens before `end`. Returns 0, or -1 with one line in `error`: stopped, or out of memory. */
 int network_run(struct network *network, sim_time end, const volatile sig_atomic_t *stop, char *error,
                 size_t error_size);
 

@@ -105,7 +105,7 @@ static int work(void *context)
     const struct recording *recording = replay->recording;
     const uint64_t now = replay->network.now / (SIM_TIME_PER_S / MH_TICKS_PER_S) - replay->lead;
     if (now == replay->instant) {
-        const struct truth truth = truth_at(recording, recording->readings[0].time_s + (double)now / MH_TICKS_PER_S);
+        const struct truth truth = truth_at(recording, network_time_s(&replay->network));
         if (replay->observer->truth) {
             replay->observer->truth(replay->observer->context, &truth);
         }
@@ -208,7 +208,10 @@ int simulation_replay(const struct scenario *scenario, const struct recording *r
     struct replay replay = {.recording = recording, .observer = observer};
     int result = bring_up(&replay, scenario, seed, error, error_size);
     if (result == 0) {
-        const uint64_t end = replay.last + 2 * (uint64_t)replay.interval + replay.lead;
+        /* The last instant is the first at or after the last reading; the head waits for it less than one interval. */
+        const uint64_t first = replay.instant, interval = replay.interval;
+        const uint64_t instants = 1 + (replay.last > first ? (replay.last - first + interval - 1) / interval : 0);
+        const uint64_t end = first + instants * interval + replay.lead;
         result = network_run(&replay.network, end * (SIM_TIME_PER_S / MH_TICKS_PER_S), stop, error, error_size);
         *counters = (struct simulation_counters){.samples = replay.samples};
         network_count(&replay.network, counters);

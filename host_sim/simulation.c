@@ -4,7 +4,6 @@
 #include "world/field.h"
 #include "world/sensor.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -16,7 +15,7 @@ struct run {
     double *concentrations;
     int32_t *counts;
     struct network network;
-    double interval_s;
+    sim_time interval;
     uint64_t instants, next; /* in all, and the one to come */
 };
 
@@ -44,7 +43,7 @@ static int sample(void *context)
 {
     struct run *run = context;
     const uint64_t instant = run->next++;
-    const double time_s = (double)instant * run->interval_s;
+    const double time_s = network_time_s(&run->network);
     if (run->observer->truth) {
         const struct truth truth = truth_at(run, time_s);
         run->observer->truth(run->observer->context, &truth);
@@ -62,10 +61,7 @@ static int sample(void *context)
             network_reading(&run->network, (uint32_t)i, run->counts[i], 0);
         }
     }
-    return run->next < run->instants
-               ? network_schedule(&run->network,
-                                  (sim_time)llround((double)run->next * run->interval_s * SIM_TIME_PER_S))
-               : 0;
+    return run->next < run->instants ? network_schedule(&run->network, run->next * run->interval) : 0;
 }
 
 static int bring_up(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
@@ -96,8 +92,8 @@ static int bring_up(struct run *run, const struct scenario *scenario, uint64_t s
         snprintf(error, error_size, "sensor.interval_s: %g, expected at least 0.001", scenario->sensor.interval_s);
         return -1;
     }
-    run->interval_s = (double)config.sensor.interval / MH_TICKS_PER_S;
-    run->instants = (uint64_t)floor(run->field.trajectory.duration_s / run->interval_s + 1e-9) + 1;
+    run->interval = (sim_time)config.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
+    run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
     run->concentrations = malloc(run->deployment.count * sizeof *run->concentrations);
     run->counts = malloc(run->deployment.count * sizeof *run->counts);
     if (!run->concentrations || !run->counts || sensors_make(&run->sensors, scenario, seed, run->deployment.count)) {
@@ -132,8 +128,7 @@ int simulation_run(const struct scenario *scenario, uint64_t seed, const struct 
     int result = bring_up(&run, scenario, seed, error, error_size);
     if (result == 0) {
         /* The head waits for the last instant's measurements less than one interval. */
-        const sim_time end = (sim_time)llround((double)run.instants * run.interval_s * SIM_TIME_PER_S);
-        result = network_run(&run.network, end, stop, error, error_size);
+        result = network_run(&run.network, run.instants * run.interval, stop, error, error_size);
         *counters = (struct simulation_counters){.samples = run.next};
         network_count(&run.network, counters);
     }

@@ -211,6 +211,9 @@ int bus_outside(const char *url, lcm_t **outside, char *error, size_t error_size
     if (strncmp(url, "memq://", 7) == 0) {
         return 0;
     }
+    if (strstr(url, "://") == NULL) { /* where LCM would choose one itself */
+        return fail(error, error_size, "--bus %s: expected a URL such as udpm://239.255.76.67:7667?ttl=0", url);
+    }
     fflush(stderr);
     const int kept = dup(STDERR_FILENO);
     const int nowhere = open("/dev/null", O_WRONLY);
@@ -218,6 +221,10 @@ int bus_outside(const char *url, lcm_t **outside, char *error, size_t error_size
         dup2(nowhere, STDERR_FILENO);
     }
     *outside = lcm_create(url);
+    if (*outside != NULL && lcm_publish(*outside, BUS_HELLO, "", 0) != 0) {
+        lcm_destroy(*outside);
+        *outside = NULL;
+    }
     fflush(stderr);
     if (kept >= 0) {
         dup2(kept, STDERR_FILENO);

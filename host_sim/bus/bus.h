@@ -11,6 +11,7 @@
 
 #include <lcm/lcm.h>
 
+#define BUS_HELLO "MOTEHOUND_HELLO" /* an empty message to the outside, before any run, to see whether there is one */
 #define BUS_RUN_BEGIN "MOTEHOUND_RUN_BEGIN"
 #define BUS_NODE "MOTEHOUND_NODE"
 #define BUS_TRUTH "MOTEHOUND_TRUTH"

@@ -4,6 +4,7 @@
 #define MOTEHOUND_SIM_COMMAND_H
 
 #include "cli/batch.h"
+#include "record/output.h"
 
 enum { COMMAND_ERROR_SIZE = 5000 };
 
@@ -19,15 +20,17 @@ int command_run(struct command *command);
 int command_replay(struct command *command);
 
 /* What run and replay have in common: a batch into folder `out`, with progress on a terminal, and a table of results on
- * standard output. `name` stands for the scenario. Returns as a command does. */
+ * standard output. Returns as a command does. */
 struct session {
     struct batch batch;
-    const char *name;
     const char *out;
     const char *bus_url;
     bool log;
 };
 int session_execute(struct command *command, struct session *session);
+
+/* FOLDER/NAME in `path`, which is returned; whatever the name, it stays within the folder. */
+const char *command_folder(const char *folder, const char *name, char path[OUTPUT_PATH_MAX]);
 
 /* Apply one `key=value` of --set. Returns 0, or -1 with one line in command->error. */
 int command_set(struct command *command, struct scenario *scenario, const char *assignment);

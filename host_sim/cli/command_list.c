@@ -3,6 +3,7 @@
 #include "cli/options.h"
 #include "scenario/folder.h"
 #include "scenario/keys.h"
+#include "scenario/text.h"
 #include "trackers.h"
 
 #include <stdio.h>
@@ -56,8 +57,7 @@ int command_list(struct command *command)
             return 1;
         }
         if (kind == OPTION_OPERAND) {
-            snprintf(command->error, sizeof command->error, "motehound list: expected options only, found '%.100s'",
-                     value);
+            fail(command->error, sizeof command->error, "motehound list: expected options only, found '%.100s'", value);
             return 1;
         }
         if (rule == HELP) {

@@ -67,6 +67,9 @@ static int read_options(struct command *command, const char *values[RULES])
 static int read_settings(struct command *command, const char *const values[RULES], struct scenario *scenario)
 {
     char path[SCENARIO_PATH_MAX];
+    if (scenario_set(scenario, "name", "replay", command->error, COMMAND_ERROR_SIZE) != 0) {
+        return -1;
+    }
     scenario->sensor.interval_s = 0; /* the recording's, unless something sets it */
     if (values[SCENARIO] != NULL && (scenario_find(values[SCENARIO], path, command->error, COMMAND_ERROR_SIZE) != 0 ||
                                      scenario_load(path, scenario, command->error, COMMAND_ERROR_SIZE) != 0)) {
@@ -96,6 +99,9 @@ static int replay(struct command *command, const char *const values[RULES], stru
         0) {
         return 1;
     }
+    if (recording_check_targets(recording, values[READINGS], values[TRUTH], command->error, COMMAND_ERROR_SIZE) != 0) {
+        return 1;
+    }
     if (scenario->sensor.interval_s <= 0) {
         char interval[40], reason[500];
         snprintf(interval, sizeof interval, "%.3f", recording->interval_s);
@@ -116,7 +122,6 @@ static int replay(struct command *command, const char *const values[RULES], stru
                   .jobs = 1,
                   .version = MOTEHOUND_VERSION,
                   .stop = command->stop},
-        .name = scenario->name[0] != '\0' ? scenario->name : "replay",
         .out = values[OUT] != NULL ? values[OUT] : "out/replay",
         .bus_url = values[BUS] != NULL ? values[BUS] : "memq://",
         .log = values[LOG] != NULL,

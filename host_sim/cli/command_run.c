@@ -157,11 +157,7 @@ static int sweep(struct command *command, struct session *session, struct scenar
             if (scenario_check(scenario, path, command->error, COMMAND_ERROR_SIZE) != 0) {
                 return 1;
             }
-            snprintf(out, sizeof out, "%.3800s/%.200s", folder, value);
-            for (char *c = out + strlen(folder) + 1; pass == 1 && *c != '\0'; c++) {
-                *c = *c == '/' ? '_' : *c;
-            }
-            one.out = out;
+            one.out = command_folder(folder, value, out);
             if (pass == 1) {
                 printf("%s = %s: ", scenario->sweep.key, value);
                 if (session_execute(command, &one) != 0) {
@@ -177,7 +173,7 @@ int command_run(struct command *command)
 {
     struct run_options options;
     struct scenario scenario;
-    char path[SCENARIO_PATH_MAX], out[200];
+    char path[SCENARIO_PATH_MAX], out[OUTPUT_PATH_MAX];
     if (read_options(command, &options) != 0) {
         return 1;
     }
@@ -193,7 +189,6 @@ int command_run(struct command *command)
         scenario_free(&scenario);
         return 1;
     }
-    snprintf(out, sizeof out, "out/%s", scenario.name);
     struct session session = {
         .batch = {.scenario = &scenario,
                   .seed = options.seed,
@@ -201,8 +196,7 @@ int command_run(struct command *command)
                   .jobs = (unsigned)options.jobs,
                   .version = MOTEHOUND_VERSION,
                   .stop = command->stop},
-        .name = scenario.name,
-        .out = options.out != NULL ? options.out : out,
+        .out = options.out != NULL ? options.out : command_folder("out", scenario.name, out),
         .bus_url = options.bus_url,
         .log = options.log,
     };

@@ -1,7 +1,11 @@
 #include "cli/command.h"
+#include "scenario/text.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char help[] = "motehound list | run | replay [OPTIONS]\n"
                            "\n"
@@ -39,18 +43,48 @@ static int dispatch(const char *name, struct command *command)
         puts("motehound " MOTEHOUND_VERSION);
         return 0;
     }
-    snprintf(command->error, sizeof command->error,
-             "motehound: expected list, run or replay, found '%.100s'; see motehound --help", name);
+    fail(command->error, sizeof command->error,
+         "motehound: expected list, run or replay, found '%.100s'; see motehound --help", name);
     return 1;
+}
+
+/* Interrupts end a run in good order, and a reader that has gone is an error of writing like any other. */
+static void listen_to_signals(void)
+{
+    const struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    struct sigaction before;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) { /* nohup stays nohup */
+        sigaction(SIGHUP, &action, NULL);
+    }
+    sigaction(SIGPIPE, &ignore, NULL);
+}
+
+/* A standard stream that came closed leads nowhere, lest a file of ours gets its number. */
+static void occupy_standard_streams(void)
+{
+    int descriptor = open("/dev/null", O_RDWR);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO) {
+        descriptor = open("/dev/null", O_RDWR);
+    }
+    if (descriptor >= 0) {
+        close(descriptor);
+    }
 }
 
 int main(int argc, char **argv)
 {
-    const struct sigaction action = {.sa_handler = on_signal};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    occupy_standard_streams();
+    listen_to_signals();
     struct command command = {.argc = argc > 2 ? argc - 2 : 0, .argv = argv + 2, .stop = &stop};
-    const int status = dispatch(argc > 1 ? argv[1] : "", &command);
+    int status = dispatch(argc > 1 ? argv[1] : "", &command);
+    errno = 0;
+    if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
+        status = 1;
+        fail(command.error, sizeof command.error, "standard output: cannot write: %s",
+             errno != 0 ? strerror(errno) : "output error");
+    }
     if (status != 0) {
         fprintf(stderr, "%s\n", command.error);
     }

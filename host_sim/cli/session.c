@@ -4,6 +4,7 @@
 #include "cli/progress.h"
 #include "scenario/text.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,6 +21,17 @@ int command_set(struct command *command, struct scenario *scenario, const char *
         return fail(command->error, sizeof command->error, "--set %s", reason);
     }
     return 0;
+}
+
+const char *command_folder(const char *folder, const char *name, char path[OUTPUT_PATH_MAX])
+{
+    const bool is_name = name[0] != '\0' && strcmp(name, ".") != 0 && strcmp(name, "..") != 0;
+    const int before = snprintf(path, OUTPUT_PATH_MAX, "%.3400s/%s", folder, is_name ? "" : "_");
+    snprintf(path + before, (size_t)(OUTPUT_PATH_MAX - before), "%.200s", name);
+    for (char *c = path + before; *c != '\0'; c++) {
+        *c = *c == '/' || iscntrl((unsigned char)*c) ? '_' : *c;
+    }
+    return path;
 }
 
 static void put_cell(double value)
@@ -45,8 +57,9 @@ static void put_table(const struct session *session, struct results *results)
                                         METRIC_FRAMES_SENT};
     double pooled[METRIC_ERRORS_COUNT];
     results_pooled(results, pooled);
-    printf("%s, tracker %s, %u run%s from seed %llu\n", session->name, session->batch.scenario->tracker.name,
-           results->run_count, results->run_count == 1 ? "" : "s", (unsigned long long)results->seed);
+    const struct scenario *scenario = session->batch.scenario;
+    printf("%s, tracker %s, %u run%s from seed %llu\n", scenario->name, scenario->tracker.name, results->run_count,
+           results->run_count == 1 ? "" : "s", (unsigned long long)results->seed);
     printf("%-28s %10s %10s %10s %10s %10s\n", "", "mean", "std", "median", "p95", "pooled");
     for (size_t i = 0; i < sizeof shown / sizeof shown[0]; i++) {
         struct metric_statistics s;
@@ -68,8 +81,8 @@ int session_execute(struct command *command, struct session *session)
     struct results results;
     struct progress progress;
     const struct scenario *simulated = session->batch.recording == NULL ? session->batch.scenario : NULL;
-    if (results_open(&results, session->out, session->name, simulated, session->batch.seed, session->log, error,
-                     COMMAND_ERROR_SIZE) != 0) {
+    if (results_open(&results, session->out, session->batch.scenario->name, simulated, session->batch.seed,
+                     session->log, error, COMMAND_ERROR_SIZE) != 0) {
         return 1;
     }
     int status = bus_outside(session->bus_url, &session->batch.outside, error, COMMAND_ERROR_SIZE);

@@ -114,9 +114,14 @@ static bool lost(const struct recorder *recorder, const struct scenario *scenari
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT])
 {
-    size_t tracked = 0;
+    size_t tracked = 0; /* instants, each once however many targets it has */
+    double counted_s = -HUGE_VAL;
     for (size_t i = 0; i < recorder->track_count; i++) {
-        tracked += recorder->tracks[i].true_known ? 1 : 0;
+        const motehound_track_t *track = &recorder->tracks[i];
+        if (track->true_known && track->time_s > counted_s) {
+            tracked++;
+            counted_s = track->time_s;
+        }
     }
     const motehound_run_end_t *end = &recorder->end;
     const bool truth = recorder->samples > 0;

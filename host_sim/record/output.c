@@ -16,6 +16,9 @@ static const char *const result_files[] = {"runs.csv",      "track.csv",  "nodes
                                            "scenario.json", "events.lcm", "summary.json"};
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
+/* Path of an output folder, with room for the names within. */
+enum { LONGEST = OUTPUT_PATH_MAX - 600 };
+
 static int sync_folder(const char *path)
 {
     const int folder = open(path, O_RDONLY | O_DIRECTORY);
@@ -53,30 +56,24 @@ int output_open(struct output *output, const char *folder, char *error, size_t e
     while (length > 1 && folder[length - 1] == '/') {
         length--;
     }
-    if (length == 0 || length > OUTPUT_PATH_MAX - 300) {
-        return fail(error, error_size, "--out: expected a folder's path of 1 to %d bytes, found %zu",
-                    OUTPUT_PATH_MAX - 300, length);
+    if (length == 0 || length > LONGEST) {
+        return fail(error, error_size, "--out: expected a folder's path of 1 to %d bytes, found %zu", LONGEST, length);
     }
     snprintf(output->folder, sizeof output->folder, "%.*s", (int)length, folder);
     struct stat status;
-    if (stat(output->folder, &status) == 0) {
-        if (!S_ISDIR(status.st_mode)) {
-            return cannot_write(output->folder, ENOTDIR, error, error_size);
-        }
-        if (access(output->folder, W_OK | X_OK) != 0) {
-            return cannot_write(output->folder, errno, error, error_size);
-        }
+    output->existed = stat(output->folder, &status) == 0;
+    if (output->existed ? !S_ISDIR(status.st_mode) : lstat(output->folder, &status) == 0) {
+        /* a file, or a link that leads nowhere */
+        return cannot_write(output->folder, output->existed ? ENOTDIR : ENOENT, error, error_size);
     }
     const char *slash = strrchr(output->folder, '/');
     const int parent = slash != NULL ? (int)(slash - output->folder) + 1 : 0;
-    const char *name = output->folder + parent;
-    if (*name == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
-        /* no name to stand beside: within it */
+    if (output->existed) {
         snprintf(output->partial, sizeof output->partial, "%.*s/.motehound.partial-%ld", (int)length, folder,
                  (long)getpid());
     } else {
-        snprintf(output->partial, sizeof output->partial, "%.*s.%.200s.partial-%ld", parent, output->folder, name,
-                 (long)getpid());
+        snprintf(output->partial, sizeof output->partial, "%.*s.%.200s.partial-%ld", parent, output->folder,
+                 output->folder + parent, (long)getpid());
     }
     output_discard(output); /* of a process that died and had our number */
     if (make_parents(output->folder) != 0 || mkdir(output->partial, 0777) != 0) {
@@ -150,11 +147,9 @@ static int replace(const struct output *output, const char *const *names, size_t
 int output_commit(struct output *output, const char *const *names, size_t count, char *error, size_t error_size)
 {
     int status = sync_folder(output->partial);
-    if (status == 0 && rename(output->partial, output->folder) != 0) {
-        /* it exists and is not empty, or is a link to a folder or within itself */
-        status = errno == ENOTEMPTY || errno == EEXIST || errno == ENOTDIR || errno == EINVAL || errno == EBUSY
-                     ? replace(output, names, count)
-                     : -1;
+    if (status == 0 && (output->existed || rename(output->partial, output->folder) != 0)) {
+        /* the second: somebody else has made it meanwhile */
+        status = output->existed || errno == ENOTEMPTY || errno == EEXIST ? replace(output, names, count) : -1;
     }
     const int reason = errno;
     output_discard(output);

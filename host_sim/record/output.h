@@ -1,12 +1,14 @@
 /* An output folder whose files appear whole or not at all.
  *
- * Files are written into a hidden folder beside it, `.NAME.partial-PID`, and made durable there. Then, if the output
- * folder does not exist, the hidden one is renamed to it; else each file is renamed into it, summary.json last and its
- * predecessor removed first, so that a folder with a summary.json always holds the files of one run. What else is in
- * the folder stays. */
+ * Files are written into a hidden folder and made durable there. Where the output folder does not exist, the hidden one
+ * stands beside it, `.NAME.partial-PID`, and is renamed to it. A folder that exists stays what it is, be it a mount
+ * point, a link or somebody's current folder: the hidden one, `.motehound.partial-PID`, stands within it and each file
+ * is renamed out of it, summary.json last and its predecessor removed first, so that a folder with a summary.json
+ * always holds the files of one run. What else is in the folder stays. */
 #ifndef MOTEHOUND_SIM_OUTPUT_H
 #define MOTEHOUND_SIM_OUTPUT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -15,6 +17,7 @@ enum { OUTPUT_PATH_MAX = 4096 };
 struct output {
     char folder[OUTPUT_PATH_MAX];  /* where the files are to appear */
     char partial[OUTPUT_PATH_MAX]; /* where they are being written */
+    bool existed;                  /* the folder, before we came */
 };
 
 /* Make the hidden folder, and the folders above. Returns 0, or -1 with one line in `error` if `folder` could not be

@@ -66,9 +66,10 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
                     name, scenario->field.height_m, scenario->network.sink_y_m);
     }
     if (scenario->sweep.key[0] != '\0' &&
-        (scenario_key_find(scenario->sweep.key) == NULL || scenario->sweep.values_count == 0)) {
+        (scenario_key_find(scenario->sweep.key) == NULL || strncmp(scenario->sweep.key, "sweep.", 6) == 0 ||
+         scenario->sweep.values_count == 0)) {
         return fail(error, error_size,
-                    "%s: sweep: expected the name of a key and at least one value, found '%.60s' and %u", name,
+                    "%s: sweep: expected a key of another section and at least one value, found '%.60s' and %u", name,
                     scenario->sweep.key, scenario->sweep.values_count);
     }
     return scenario_check_tracking(scenario, name, error, error_size);
@@ -80,8 +81,9 @@ int scenario_check_tracking(const struct scenario *scenario, const char *name, c
         return fail(error, error_size, "%s: tracker.window_s: expected less than sensor.interval_s = %g, found %g",
                     name, scenario->sensor.interval_s, scenario->tracker.window_s);
     }
-    if (strcmp(scenario->tracker.name, "diffusion") == 0 && scenario->tracker.chi <= 0) {
-        return fail(error, error_size, "%s: tracker.chi: expected more than 0 for tracker diffusion, found 0", name);
+    if (strcmp(scenario->tracker.name, "diffusion") == 0 && scenario->tracker.chi < 1e-3) {
+        return fail(error, error_size, "%s: tracker.chi: expected at least 0.001 for tracker diffusion, found %g", name,
+                    scenario->tracker.chi);
     }
     return 0;
 }

@@ -2,6 +2,7 @@
 
 #include "scenario/text.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,10 +43,10 @@ const struct scenario_key scenario_keys[] = {
     {"radio.bitrate_bps", KEY_NUMBER, AT(radio.bitrate_bps), "250000", 100, 1e9, NULL, "gives the air time"},
     {"radio.loss", KEY_NUMBER, AT(radio.loss), "0", 0, 1, NULL, "probability that a receiver loses a frame"},
     {"tracker.name", KEY_WORD, AT(tracker.name), "diffusion", 0, 0, "diffusion|luo|range", "which tracker the head runs"},
-    {"tracker.diffusion_m2ps", KEY_NUMBER, AT(tracker.diffusion_m2ps), "1", 1e-4, 1e4, NULL, "diffusion, luo: assumed diffusion coefficient"},
+    {"tracker.diffusion_m2ps", KEY_NUMBER, AT(tracker.diffusion_m2ps), "1", 1e-4, 1e3, NULL, "diffusion, luo: assumed diffusion coefficient"},
     {"tracker.chi", KEY_NUMBER, AT(tracker.chi), "0.2", 0, 1000, NULL, "diffusion, luo: significant increment of concentration, g/m2"},
-    {"tracker.release_gps", KEY_NUMBER, AT(tracker.release_gps), "100", 1e-6, 1e6, NULL, "diffusion: expected release rate"},
-    {"tracker.additive_sd", KEY_NUMBER, AT(tracker.additive_sd), "0.05", 1e-6, 1000, NULL, "diffusion: assumed noise of a reading, g/m2"},
+    {"tracker.release_gps", KEY_NUMBER, AT(tracker.release_gps), "100", 1e-3, 1e5, NULL, "diffusion: expected release rate"},
+    {"tracker.additive_sd", KEY_NUMBER, AT(tracker.additive_sd), "0.05", 1e-3, 1000, NULL, "diffusion: assumed noise of a reading, g/m2"},
     {"tracker.relative_sd", KEY_NUMBER, AT(tracker.relative_sd), "0.05", 0, 1, NULL, "diffusion: assumed noise as a share of the reading"},
     {"tracker.forgetting", KEY_NUMBER, AT(tracker.forgetting), "0.97", 0.5, 0.9999, NULL, "luo: b of the Sage-Husa weight"},
     {"tracker.nonlinear", KEY_SWITCH, AT(tracker.nonlinear), "false", 0, 0, NULL, "luo: solve Eq. (9) from the answer of (10)"},
@@ -93,13 +94,13 @@ const char *scenario_key_expectation(const struct scenario_key *key, char *text,
         }
         break;
     case KEY_TEXT:
-        snprintf(text, size, "text of at most %.0f bytes", key->maximum);
+        snprintf(text, size, "UTF-8 text of at most %.0f bytes", key->maximum);
         break;
     case KEY_POINTS:
         snprintf(text, size, "%.0f to %.0f points `x,y[,speed factor]; ...`", key->minimum, key->maximum);
         break;
     case KEY_LIST:
-        snprintf(text, size, "at most %.0f values `a, b, ...`", key->maximum);
+        snprintf(text, size, "at most %.0f values in UTF-8 `a, b, ...`", key->maximum);
         break;
     }
     return text;
@@ -227,11 +228,19 @@ static bool set_points(struct scenario *scenario, const struct scenario_key *key
     return true;
 }
 
+/* As scenario.json will want it. */
+static bool is_utf8(const char *text)
+{
+    json_t *string = json_string(text);
+    json_decref(string);
+    return string != NULL;
+}
+
 static bool set_list(struct scenario *scenario, const struct scenario_key *key, const char *value)
 {
     char **values = NULL;
     const int count = *value == '\0' ? 0 : split(value, ',', &values);
-    if (count < 0 || count > key->maximum) {
+    if (count < 0 || !is_utf8(value) || count > key->maximum) {
         if (count > 0) {
             free_list(values, (unsigned)count);
         }
@@ -287,7 +296,7 @@ static bool set(struct scenario *scenario, const struct scenario_key *key, const
     case KEY_WORD:
         return choice_of(key->choices, value) >= 0 && set_text(member, value);
     case KEY_TEXT:
-        return (double)strlen(value) <= key->maximum && set_text(member, value);
+        return (double)strlen(value) <= key->maximum && is_utf8(value) && set_text(member, value);
     case KEY_POINTS:
         return set_points(scenario, key, value);
     case KEY_LIST:

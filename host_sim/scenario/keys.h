@@ -11,7 +11,7 @@ enum key_type {
     KEY_SWITCH, /* bool: true or false */
     KEY_CHOICE, /* an enum: the index of a word in `choices` */
     KEY_WORD,   /* char *: one of `choices` */
-    KEY_TEXT,   /* char *: at most `maximum` bytes */
+    KEY_TEXT,   /* char *: at most `maximum` bytes of UTF-8 */
     KEY_POINTS, /* source.points */
     KEY_LIST    /* sweep.values */
 };

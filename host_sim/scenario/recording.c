@@ -434,6 +434,31 @@ int recording_load(const char *nodes_path, const char *readings_path, const char
     return 0;
 }
 
+static int two_targets(const char *name, size_t row, int first, int other, char *error, size_t error_size)
+{
+    return fail(error, error_size,
+                "%s: target: expected one, which is all that trackers follow, found %d and %d in row %zu", name, first,
+                other, row + 1);
+}
+
+int recording_check_targets(const struct recording *recording, const char *readings_name, const char *truth_name,
+                            char *error, size_t error_size)
+{
+    for (size_t i = 1; i < recording->reading_count; i++) {
+        const int first = recording->readings[0].target, other = recording->readings[i].target;
+        if (other != first) {
+            return two_targets(readings_name, i, first, other, error, error_size);
+        }
+    }
+    for (size_t i = 1; i < recording->truth_count; i++) {
+        const int first = recording->truths[0].target, other = recording->truths[i].target;
+        if (other != first) {
+            return two_targets(truth_name, i, first, other, error, error_size);
+        }
+    }
+    return 0;
+}
+
 void recording_free(struct recording *recording)
 {
     free(recording->nodes);

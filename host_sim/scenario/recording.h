@@ -57,6 +57,11 @@ int recording_load(const char *nodes_path, const char *readings_path, const char
 /* Only nodes.csv, as network.file wants it. */
 int recording_load_nodes(const char *nodes_path, struct recording *recording, char *error, size_t error_size);
 
+/* Trackers follow one target: readings, and truth, are of one target each. Returns 0, or -1 with one line in `error`;
+ * the names stand for the files. */
+int recording_check_targets(const struct recording *recording, const char *readings_name, const char *truth_name,
+                            char *error, size_t error_size);
+
 void recording_free(struct recording *recording);
 
 #endif

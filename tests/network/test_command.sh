@@ -26,6 +26,12 @@ refused '--set speed: expected key=value' "$MOTEHOUND" run luo_exp1 --set speed
 refused '--bus nowhere://: expected a URL' "$MOTEHOUND" run luo_exp1 --bus nowhere://
 nothing out/luo_exp1
 
+refused "found 'a.b'" "$MOTEHOUND" $'a\nb'
+refused "found 'a.b'" "$MOTEHOUND" list $'a\nb'
+refused '^--bus : expected a URL' "$MOTEHOUND" run luo_exp1 --bus ''
+refused '^--bus tcpq://127.0.0.1:1: expected a URL' "$MOTEHOUND" run luo_exp1 --bus tcpq://127.0.0.1:1
+nothing out/luo_exp1
+
 # bad scenarios
 refused 'luo_exp9: expected a scenario.s file or a name of .motehound list., found neither' "$MOTEHOUND" run luo_exp9
 refused '^none.yaml: expected a scenario' "$MOTEHOUND" run none.yaml
@@ -41,6 +47,8 @@ refused "^--set network.nodes: expected a whole number 4 to 1000000, found '3'" 
 refused '^--set network.node: unknown key.*network.nodes' "$MOTEHOUND" run luo_exp1 --set network.node=30
 refused '^.*luo_exp1.yaml: sensor.outage_s: expected an end within the run' "$MOTEHOUND" run luo_exp1 --set sensor.outage_s=500
 refused 'sweep: expected a key and values' "$MOTEHOUND" run luo_exp1 --sweep
+refused '^--set name: expected UTF-8 text' "$MOTEHOUND" run luo_exp1 --set name=$'\xff'
+refused "sweep: expected a key of another section .*, found 'sweep.values'" "$MOTEHOUND" run luo_exp1 --set sweep.key=sweep.values --set sweep.values=1,2 --sweep
 nothing out/key
 nothing out/luo_exp1
 
@@ -63,6 +71,12 @@ refused '^none.csv: cannot read' "$MOTEHOUND" replay --nodes none.csv --readings
 refused 'expected --readings FILE' "$MOTEHOUND" replay --nodes nodes.csv --tracker luo
 refused 'expected --tracker NAME' "$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv
 refused "^--tracker: tracker.name: expected one of .*, found 'kalman'" "$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv --tracker kalman
+targets() { { echo time_s,node,value,target; printf '%s\n' "$@"; } >readings.csv; }
+targets 0,0,1,1 0,1,1,1 1,0,1,2
+refused '^readings.csv: target: expected one.* found 1 and 2 in row 3' "${replay[@]}"
+readings 0,0,1 1,0,1
+printf 'time_s,x_m,y_m,target\n0,0,0,0\n0,9,9,1\n' >truths.csv
+refused '^truths.csv: target: expected one.* found 0 and 1 in row 2' "${replay[@]}" --truth truths.csv
 nothing replayed
 
 # a replay without a truth has no errors; with one it has
@@ -105,6 +119,45 @@ accepted "$MOTEHOUND" run luo_exp4 --set tracker.name=luo --set source.speed_mps
 refused 'sweep: network.nodes: expected a whole number' "$MOTEHOUND" run luo_exp4 --set sweep.values=100,two --sweep --out swept
 nothing swept
 
+# a name stays within its folder, whatever it is; swept names too
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set name=../../evil
+[ -s out/.._.._evil/summary.json ] || complain "folder of a name with slashes: $(ls -A out)"
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sweep.key=name --set 'sweep.values=..,,a/b' --sweep --out swept
+[ "$(ls -A swept)" = "$(printf '_\n_..\na_b')" ] || complain "folders of the sweep: $(ls -A swept)"
+[ ! -e summary.json ] || complain "a sweep wrote outside its folder"
+
+# a folder that exists stays the same one: it may be the current folder, a link or a mount point
+mkdir current real
+ln -s real link
+(cd current && accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --out ../current && [ -s summary.json ]) ||
+    complain "the current folder was replaced"
+accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --out link
+[ -L link ] && [ -s real/summary.json ] || complain "the link was replaced"
+ln -s nowhere loose
+refused '^loose: cannot write into this folder' "$MOTEHOUND" run luo_exp1 --runs 100000 --out loose
+nothing loose
+if unshare -rm true 2>/dev/null; then
+    mkdir mounted
+    unshare -rm sh -c 'mount -t tmpfs -o size=1m none mounted && "$@" --out mounted >/dev/null && test -s mounted/summary.json' \
+        sh "$MOTEHOUND" run luo_exp1 "${small[@]}" || complain "a mount point as the folder"
+    unshare -rm sh -c 'mount -t tmpfs -o size=16k none mounted && exec "$@" --out mounted/full' \
+        sh "$MOTEHOUND" run luo_exp1 "${small[@]}" >out.txt 2>err.txt && complain "a full disk: status 0"
+    grep -q 'No space left' err.txt && [ "$(wc -l <err.txt)" -eq 1 ] || complain "a full disk: $(cat err.txt)"
+fi
+
+# standard streams: full, gone, or closed from the start
+refuses_stdout() {
+    [ "$1" -eq 1 ] && grep -q '^standard output: cannot write' err.txt && [ "$(wc -l <err.txt)" -eq 1 ] ||
+        complain "standard output $2: status $1, $(cat err.txt)"
+}
+"$MOTEHOUND" run luo_exp1 "${small[@]}" --out streams >/dev/full 2>err.txt
+refuses_stdout $? full
+[ -s streams/summary.json ] || complain "no results after a full standard output"
+{ sleep 0.2; "$MOTEHOUND" list --keys 2>err.txt; echo $? >status.txt; } | true
+refuses_stdout "$(cat status.txt)" gone
+"$MOTEHOUND" run luo_exp1 "${small[@]}" --out closed <&- >&- 2>&- || complain "closed standard streams"
+diff -r streams closed >/dev/null || complain "closed standard streams change the results"
+
 # a folder that cannot be written is refused before anything is simulated
 echo file >plain
 began=$SECONDS
@@ -114,7 +167,7 @@ refused '^/proc/motehound: cannot write into this folder: ' "$MOTEHOUND" run luo
 [ $((SECONDS - began)) -lt 20 ] || complain "simulated before the folder was tried"
 
 # an interrupt in mid-run
-for signal in INT TERM; do
+for signal in INT TERM HUP; do
     "$MOTEHOUND" run luo_exp1 --set tracker.name=luo --runs 100000 --log --jobs 2 --out stopped >out.txt 2>err.txt &
     process=$!
     for _ in $(seq 100); do [ -n "$(find . -maxdepth 1 -name '.stopped.partial*')" ] && break; sleep 0.1; done

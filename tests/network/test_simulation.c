@@ -2,6 +2,7 @@
 #include "../unit/host_sim/scenarios.h"
 #include "engine/random.h"
 #include "port.h"
+#include "scenario/keys.h"
 #include "simulation.h"
 #include "unity.h"
 #include "world/deployment.h"
@@ -25,7 +26,7 @@ static struct told {
     unsigned count, nodes, instants;
     double square, raw_square, arrival_square; /* sums over the estimates */
     uint64_t frames[MH_MESSAGE_KINDS], unsound;
-    double last_s;
+    double last_s, instant_s;
     bool backwards;
     uint64_t hash; /* FNV-1a of every call */
 } told;
@@ -63,6 +64,7 @@ static void hear_truth(void *context, const struct truth *truth)
     (void)context;
     at(truth->time_s);
     mix(&truth->x_m, sizeof truth->x_m);
+    told.instant_s = truth->time_s;
     told.instants++;
 }
 
@@ -83,6 +85,7 @@ static void hear_estimate(void *context, double time_s, const struct mh_estimate
     mix(&estimate->covariance, sizeof estimate->covariance);
     TEST_ASSERT_TRUE(mh_finite(estimate->position.x) && mh_finite(estimate->position.y));
     TEST_ASSERT_TRUE(told.count < ESTIMATES_MAX);
+    TEST_ASSERT_TRUE(at_time->time_s == told.instant_s); /* bit by bit, or its presence could differ */
     told.estimates[told.count++] = (struct one){.now_s = time_s,
                                                 .time_s = at_time->time_s,
                                                 .x_m = estimate->origin.x_mm * 1e-3 + (double)estimate->position.x,
@@ -411,6 +414,49 @@ static void replay_without_truth_or_readings(void)
     TEST_ASSERT_EQUAL_STRING("the recording has no readings", error);
 }
 
+/* Thirds of a second are no whole number of anything. */
+static void estimates_are_of_the_instants_that_are_told(void)
+{
+    struct scenario scenario = e1();
+    scenario.sensor.interval_s = 0.3;
+    scenario.tracker.window_s = 1e-6; /* the head closes at once */
+    memset(&told, 0, sizeof told);
+    run(&scenario, 0);
+    TEST_ASSERT_EQUAL_UINT64(counters.samples, told.instants);
+    scenario.tracker.window_s = 0;
+    memset(&told, 0, sizeof told);
+    run(&scenario, 0);
+    TEST_ASSERT_TRUE(told.count > 20);
+}
+
+/* What the table of keys lets through, the trackers take. */
+static void every_tracker_comes_up_at_both_ends_of_every_key(void)
+{
+    static const char *const names[] = {"diffusion", "luo"};
+    for (size_t i = 0; i < scenario_key_count; i++) {
+        const struct scenario_key *key = &scenario_keys[i];
+        const bool counts =
+            key->type == KEY_NUMBER && (strncmp(key->path, "tracker.", 8) == 0 ||
+                                        strncmp(key->path, "sensor.", 7) == 0 || strncmp(key->path, "radio.", 6) == 0);
+        for (int end = 0; end < 4 && counts; end++) {
+            char text[40];
+            struct scenario scenario;
+            TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
+            TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "network.nodes", "20", error, sizeof error));
+            TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "source.speed_mps", "30", error, sizeof error));
+            TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "tracker.name", names[end / 2], error, sizeof error));
+            snprintf(text, sizeof text, "%.17g", end % 2 == 0 ? key->minimum : key->maximum);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, key->path, text, error, sizeof error), error);
+            if (scenario_check(&scenario, "scenario", error, sizeof error) == 0) {
+                const struct observer none = {0};
+                TEST_ASSERT_EQUAL_INT_MESSAGE(
+                    0, simulation_run(&scenario, 0, &none, NULL, &counters, error, sizeof error), key->path);
+            }
+            scenario_free(&scenario);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -422,6 +468,8 @@ int main(void)
     RUN_TEST(outage_leaves_a_gap_and_no_more);
     RUN_TEST(a_run_is_quick);
     RUN_TEST(stops_when_told);
+    RUN_TEST(estimates_are_of_the_instants_that_are_told);
+    RUN_TEST(every_tracker_comes_up_at_both_ends_of_every_key);
     RUN_TEST(refuses_what_it_cannot_run);
     RUN_TEST(replay_of_a_simulation_is_the_simulation);
     RUN_TEST(replay_of_ranges_with_jitter);

@@ -125,8 +125,10 @@ static void a_link_to_a_folder_and_the_working_folder_are_written_into(void)
     static const char *const names[] = {"runs.csv"};
     char here[300];
     struct output output;
+    struct stat before, after;
     TEST_ASSERT_EQUAL_INT(0, mkdir(at("real"), 0777));
     TEST_ASSERT_EQUAL_INT(0, symlink("real", at("link")));
+    TEST_ASSERT_EQUAL_INT(0, stat(at("real"), &before));
     TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("link"), error, sizeof error));
     put(&output, "runs.csv", "1");
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, output_commit(&output, names, 1, error, sizeof error), error);
@@ -140,6 +142,8 @@ static void a_link_to_a_folder_and_the_working_folder_are_written_into(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, status, error);
     assert_file("real/runs.csv", "2");
     TEST_ASSERT_EQUAL_INT(1, entries(at("real"), ""));
+    TEST_ASSERT_EQUAL_INT(0, stat(at("real"), &after));
+    TEST_ASSERT_TRUE(before.st_ino == after.st_ino);
 }
 
 static void a_folder_that_cannot_be_written_is_refused(void)
@@ -150,7 +154,9 @@ static void a_folder_that_cannot_be_written_is_refused(void)
     TEST_ASSERT_NOT_NULL(strstr(error, "file: cannot write into this folder: Not a directory"));
     TEST_ASSERT_EQUAL_INT(-1, output_open(&output, at("file/out"), error, sizeof error));
     TEST_ASSERT_EQUAL_INT(-1, output_open(&output, "", error, sizeof error));
-    TEST_ASSERT_EQUAL_INT(1, entries(base, ""));
+    TEST_ASSERT_EQUAL_INT(0, symlink("nowhere", at("link")));
+    TEST_ASSERT_EQUAL_INT(-1, output_open(&output, at("link"), error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(2, entries(base, ""));
 }
 
 /* A disk that is full, as Linux offers one. */
