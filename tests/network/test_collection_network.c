@@ -69,6 +69,13 @@ static enum mh_status tracker_step(void *state, mh_tick time, const struct mh_me
     return (*(const struct script **)state)->tracks ? MH_OK : MH_NONE;
 }
 
+static enum mh_status tracker_predict(const void *state, mh_tick time, struct mh_estimate *expected)
+{
+    (void)time;
+    (void)expected;
+    return (*(const struct script *const *)state)->tracks ? MH_OK : MH_NONE;
+}
+
 static enum mh_status tracker_interest(const void *state, struct mh_interest *interest)
 {
     const struct script *script = *(const struct script *const *)state;
@@ -80,6 +87,7 @@ static const struct mh_tracker tracker = {.name = "script",
                                           .state_size = sizeof(void *),
                                           .init = tracker_init,
                                           .step = tracker_step,
+                                          .predict = tracker_predict,
                                           .interest = tracker_interest};
 
 static uint32_t draw(uint32_t limit)

@@ -82,6 +82,14 @@ static enum mh_status tracker_step(void *state, mh_tick time, const struct mh_me
     return tracks ? MH_OK : MH_NONE;
 }
 
+static enum mh_status tracker_predict(const void *state, mh_tick time, struct mh_estimate *expected)
+{
+    (void)state;
+    (void)time;
+    (void)expected;
+    return tracks ? MH_OK : MH_NONE;
+}
+
 static enum mh_status tracker_interest(const void *state, struct mh_interest *interest)
 {
     (void)state;
@@ -96,6 +104,7 @@ static const struct mh_tracker tracker = {.name = "check",
                                           .state_size = sizeof(mh_tick),
                                           .init = tracker_init,
                                           .step = tracker_step,
+                                          .predict = tracker_predict,
                                           .interest = tracker_interest};
 
 static void hurt(struct mh_mote *mote, mh_tick now)

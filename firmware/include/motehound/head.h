@@ -28,7 +28,7 @@ struct mh_head {
     struct mh_measurement measurements[MH_REPORTS_MAX]; /* by time, then node, then target */
     uint16_t count;
     mh_tick instant; /* the sampling instant being gathered */
-    bool tracking;   /* the last step gave a position */
+    bool tracking;   /* a track exists: the tracker can predict, whether or not the last instant gave a position */
     struct mh_head_counters counters;
 };
 

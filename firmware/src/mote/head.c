@@ -109,10 +109,12 @@ enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate)
     while (due < head->count && !is_of_next(head, &head->measurements[due])) {
         due++;
     }
-    const enum mh_status status =
-        head->config->tracker->step(head->config->tracker_state, head->instant, head->measurements, due, estimate);
-    head->tracking = status == MH_OK;
-    head->counters.estimates += head->tracking;
+    const struct mh_tracker *tracker = head->config->tracker;
+    void *state = head->config->tracker_state;
+    struct mh_estimate expected;
+    const enum mh_status status = tracker->step(state, head->instant, head->measurements, due, estimate);
+    head->counters.estimates += status == MH_OK;
+    head->tracking = tracker->predict(state, head->instant, &expected) == MH_OK;
     head->count = (uint16_t)(head->count - due);
     memmove(&head->measurements[0], &head->measurements[due], head->count * sizeof head->measurements[0]);
     head->instant += head->config->interval;

@@ -68,7 +68,7 @@ void mh_diffusion_config_default(struct mh_diffusion_config *config)
         .turn_mps2 = 0.35f,
         .speed_mps = 3.0f,
         .reach_m = 8.0f,
-        .region = {-1000000000, 1000000000, -1000000000, 1000000000},
+        .region = {-MH_COORDINATE_MAX_MM, MH_COORDINATE_MAX_MM, -MH_COORDINATE_MAX_MM, MH_COORDINATE_MAX_MM},
     };
     *config = nominal;
 }
@@ -83,6 +83,11 @@ static void learn_rate_change(struct mh_diffusion *track, mh_real change)
 
 static bool within(mh_real value, mh_real low, mh_real high) { return value >= low && value <= high; }
 
+static bool is_span(int32_t low_mm, int32_t high_mm)
+{
+    return low_mm < high_mm && mh_coordinate_valid(low_mm) && mh_coordinate_valid(high_mm);
+}
+
 static enum mh_status init(void *state, const void *config, mh_tick interval)
 {
     struct mh_diffusion *track = state;
@@ -94,7 +99,7 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
         !within(c->release_gps, 1e-3f, 1e5f) || !within(c->release_drift, 1e-3f, 1.0f) ||
         !within(c->additive_sd, 1e-3f, 1e3f) || !within(c->relative_sd, 0.0f, 1.0f) ||
         !within(c->turn_mps2, 1e-3f, 1e2f) || !within(c->speed_mps, 1e-2f, 1e3f) || !within(c->reach_m, 0.1f, 1e3f) ||
-        c->region.x_min_mm >= c->region.x_max_mm || c->region.y_min_mm >= c->region.y_max_mm) {
+        !is_span(c->region.x_min_mm, c->region.x_max_mm) || !is_span(c->region.y_min_mm, c->region.y_max_mm)) {
         return MH_ERR_ARGUMENT;
     }
     track->config = *c;

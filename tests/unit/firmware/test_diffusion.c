@@ -121,6 +121,9 @@ static void configuration_is_checked(void)
     config.release_drift = 0.05f;
     config.region.x_max_mm = config.region.x_min_mm;
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_diffusion.init(&state, &config, INTERVAL));
+    config.region.x_max_mm = MH_COORDINATE_MAX_MM;
+    config.region.y_min_mm = -MH_COORDINATE_MAX_MM - 1;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_diffusion.init(&state, &config, INTERVAL));
 }
 
 static void nothing_comes_of_nothing(void)

@@ -86,6 +86,14 @@ static enum mh_status tracker_step(void *state, mh_tick time, const struct mh_me
     return tracker_does.step_status;
 }
 
+static enum mh_status tracker_predict(const void *state, mh_tick time, struct mh_estimate *expected)
+{
+    (void)state;
+    (void)time;
+    (void)expected;
+    return tracker_does.step_status;
+}
+
 static enum mh_status tracker_interest(const void *state, struct mh_interest *interest)
 {
     (void)state;
@@ -93,8 +101,11 @@ static enum mh_status tracker_interest(const void *state, struct mh_interest *in
     return tracker_does.interest_status;
 }
 
-static const struct mh_tracker tracker = {
-    .name = "script", .init = tracker_init, .step = tracker_step, .interest = tracker_interest};
+static const struct mh_tracker tracker = {.name = "script",
+                                          .init = tracker_init,
+                                          .step = tracker_step,
+                                          .predict = tracker_predict,
+                                          .interest = tracker_interest};
 
 static struct mh_sensor_config sensor;
 static struct mh_head_config head_config;
