@@ -21,12 +21,12 @@
 
 struct mh_collection_config {
     mh_tick beacon_period; /* between the sink's rounds of beacons, ticks, 1,000 to 3,600,000 */
-    mh_tick
-        beacon_wait; /* longest wait before a beacon is relayed, ticks, 1 to 1,000; the radio should send many frames in it */
+    /* longest wait before a beacon is relayed, ticks, 1 to 1,000; the radio should be able to send many frames in it */
+    mh_tick beacon_wait;
     mh_tick request_wait;   /* longest wait before a request is relayed, ticks, 1 to 1,000 */
     uint8_t suppress_after; /* copies heard that make a relay needless, >= 1 */
-    uint32_t
-        range_mm; /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
+    /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
+    uint32_t range_mm;
 };
 
 #define MH_COLLECTION_SEEN 3 /* requests remembered, so that none is relayed twice */

@@ -6,17 +6,14 @@
  * one update each; they need not belong to the same instant.
  *
  * Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, chapter V. Several filters may run side by
- * side: nothing is shared. Stack: 4 (n^2 + n (n + 1) / 2) bytes in predict, 8 n and a copy of the filter in update, and a few registers. */
+ * side: nothing is shared. Symmetric matrices are packed as matrix.h says. Stack: 4 (n^2 + n (n + 1) / 2) bytes in predict, 8 n and a copy of the filter in update, and a few registers. */
 #ifndef MOTEHOUND_KALMAN_H
 #define MOTEHOUND_KALMAN_H
 
 #include "motehound/config.h"
+#include "motehound/matrix.h"
 #include "motehound/real.h"
 #include "motehound/status.h"
-
-/* Symmetric matrices travel as their upper triangle, column by column: (0,0), (0,1), (1,1), (0,2), ... */
-#define MH_PACKED_SIZE(n) ((n) * ((n) + 1) / 2)
-#define MH_PACKED(row, column) ((column) * ((column) + 1) / 2 + (row)) /* row <= column */
 
 struct mh_kalman {
     uint8_t n;                                        /* states, 1 to MH_KALMAN_STATES_MAX */

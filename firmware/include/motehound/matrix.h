@@ -1,8 +1,8 @@
 /* Small dense symmetric positive definite matrices: Cholesky factor, solution, inverse.
  *
- * An n x n symmetric matrix is its lower triangle, packed row by row: element (i, j), j <= i, is a[i (i + 1) / 2 + j]. The caller owns
- * the memory, MH_PACKED_SIZE(n) reals. Everything is done in place, n^3/6 multiplications for the factor, n^2 for a solution, n^3/3 for
- * the inverse, with n square roots. 1 <= n <= 100. */
+ * An n x n symmetric matrix is its upper triangle, packed column by column (or, the same numbers, its lower triangle row
+ * by row): (0,0), (0,1), (1,1), (0,2), ... The caller owns the memory, MH_PACKED_SIZE(n) reals. Everything is done in place,
+ * n^3/6 multiplications for the factor, n^2 for a solution, n^3/3 for the inverse, with n square roots. 1 <= n <= 100. */
 #ifndef MOTEHOUND_MATRIX_H
 #define MOTEHOUND_MATRIX_H
 
@@ -11,10 +11,13 @@
 
 #define MH_PACKED_SIZE(n) ((n) * ((n) + 1) / 2)
 
-/* Index of element (row, column) of either triangle. */
+/* Index of element (row, column), row <= column; a constant where both are. */
+#define MH_PACKED(row, column) ((column) * ((column) + 1) / 2 + (row))
+
+/* The same for either triangle. */
 static inline int mh_packed_index(int row, int column)
 {
-    return row >= column ? row * (row + 1) / 2 + column : column * (column + 1) / 2 + row;
+    return row <= column ? MH_PACKED(row, column) : MH_PACKED(column, row);
 }
 
 /* a := L with a = L L', L lower triangular. Errors: MH_ERR_SINGULAR (not positive definite in float: a pivot is below 1e-7 of its

@@ -2,6 +2,8 @@
 #ifndef MOTEHOUND_TICKS_H
 #define MOTEHOUND_TICKS_H
 
+#include "motehound/real.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -11,6 +13,12 @@ typedef uint32_t mh_tick;
 
 /* later - earlier in ticks, negative when `later` is in fact earlier; right across the wrap. */
 static inline int32_t mh_ticks_between(mh_tick earlier, mh_tick later) { return (int32_t)(later - earlier); }
+
+/* The same in seconds. */
+static inline mh_real mh_seconds_between(mh_tick earlier, mh_tick later)
+{
+    return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
+}
 
 /* True if a is strictly before b. */
 static inline bool mh_tick_before(mh_tick a, mh_tick b) { return mh_ticks_between(a, b) > 0; }

@@ -68,8 +68,8 @@ struct mh_trail_fit {
 
     mh_real cost;      /* all residuals' rho at the solution */
     mh_real data_cost; /* the rows' share */
-    mh_real covariance[MH_PACKED_SIZE(
-        MH_FIT_UNKNOWNS)]; /* inverse normal matrix at the solution, packed; work space in between */
+    /* inverse normal matrix at the solution, packed; work space in between */
+    mh_real covariance[MH_PACKED_SIZE(MH_FIT_UNKNOWNS)];
     mh_real normal[MH_PACKED_SIZE(MH_FIT_UNKNOWNS)]; /* work */
     mh_real gradient[MH_FIT_UNKNOWNS], step[MH_FIT_UNKNOWNS];
 };

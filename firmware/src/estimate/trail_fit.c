@@ -9,16 +9,11 @@
 #define ROUNDING 1.0001f    /* on a diagonal: keeps a nearly singular block positive definite */
 #define KNOT_DRIFT_M2 1e-4f /* what the linearisation forgets, for each instant */
 
-static mh_real seconds(mh_tick earlier, mh_tick later)
-{
-    return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
-}
-
 static int unknowns(const struct mh_trail_fit *fit) { return 2 * fit->knot_count + 2; }
 
 static mh_real squared(mh_real a) { return a * a; }
 
-static mh_real interval_s(const struct mh_trail_fit *fit) { return seconds(0, fit->model.interval); }
+static mh_real interval_s(const struct mh_trail_fit *fit) { return mh_seconds_between(0, fit->model.interval); }
 
 /* rho(r) = r^2 inside, 2 h r - h^2 outside, and the weight that makes r^2 * weight the same slope. */
 static mh_real huber(mh_real residual, mh_real bound, mh_real *weight)
@@ -68,11 +63,11 @@ static mh_real row_model(const struct mh_trail_fit *fit, const struct mh_fit_row
         struct mh_segment segment = {k > 0 ? fit->knots[k - 1].place : frozen->place, end->place, 0.0f, 0.0f};
         const mh_tick start = k > 0 ? fit->knots[k - 1].time : frozen->time;
         struct mh_segment_field field = {0.0f, {0.0f, 0.0f}, {0.0f, 0.0f}};
-        segment.age_a = seconds(start, row->time);
-        segment.age_b = seconds(end->time, row->time);
+        segment.age_a = mh_seconds_between(start, row->time);
+        segment.age_b = mh_seconds_between(end->time, row->time);
         mh_segment_add_field(&segment, row->node, fit->model.diffusion_m2ps, 1.0f, &field);
-        segment.age_a = seconds(start, row->time - fit->model.interval);
-        segment.age_b = seconds(end->time, row->time - fit->model.interval);
+        segment.age_a = mh_seconds_between(start, row->time - fit->model.interval);
+        segment.age_b = mh_seconds_between(end->time, row->time - fit->model.interval);
         mh_segment_add_field(&segment, row->node, fit->model.diffusion_m2ps, -1.0f, &field);
         const mh_real rate = rates[k];
         released += rate * field.value;
@@ -112,14 +107,14 @@ static mh_real add_motion(const struct mh_trail_fit *fit, mh_real *normal, mh_re
 static mh_real add_motion_prior(const struct mh_trail_fit *fit, int k, mh_real *normal, mh_real *gradient)
 {
     const struct mh_vec2 none = {0.0f, 0.0f};
-    const mh_real after = seconds(fit->knots[k - 1].time, fit->knots[k].time);
+    const mh_real after = mh_seconds_between(fit->knots[k - 1].time, fit->knots[k].time);
     if (k == 1 && fit->trail.count == 0) {
         const mh_real c = 1.0f / (fit->model.speed_mps * after);
         const mh_real coefficients[2] = {-c, c};
         return add_motion(fit, normal, gradient, 0, 2, coefficients, none);
     }
     const struct mh_trail_knot *frozen = last_frozen(fit);
-    const mh_real before = seconds(k > 1 ? fit->knots[k - 2].time : frozen->time, fit->knots[k - 1].time);
+    const mh_real before = mh_seconds_between(k > 1 ? fit->knots[k - 2].time : frozen->time, fit->knots[k - 1].time);
     const mh_real scale = 1.0f / (fit->model.turn_mps2 * mh_sqrt(0.5f * (before + after) * interval_s(fit)));
     const mh_real coefficients[3] = {scale / before, -scale / before - scale / after, scale / after};
     if (k > 1) {
@@ -381,12 +376,13 @@ void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time)
     }
     fit->log_rate = mh_clamp(fit->log_rate + fit->log_rate_step, fit->bounds.log_rate_low, fit->bounds.log_rate_high);
     fit->prior_log_rate = fit->log_rate;
-    fit->log_rate_sd = mh_sqrt(variance + squared(fit->log_rate_drift) *
-                                              seconds(fit->knots[fit->knot_count - 1].time, time) / interval_s(fit));
+    fit->log_rate_sd =
+        mh_sqrt(variance + squared(fit->log_rate_drift) *
+                               mh_seconds_between(fit->knots[fit->knot_count - 1].time, time) / interval_s(fit));
     const struct mh_fit_knot *last = &fit->knots[fit->knot_count - 1];
     const struct mh_fit_knot *older = last - 1;
     struct mh_fit_knot *next = &fit->knots[fit->knot_count];
-    const mh_real ratio = seconds(last->time, time) / seconds(older->time, last->time);
+    const mh_real ratio = mh_seconds_between(last->time, time) / mh_seconds_between(older->time, last->time);
     next->time = time;
     next->place.x =
         mh_clamp(last->place.x + ratio * (last->place.x - older->place.x), fit->bounds.low.x, fit->bounds.high.x);

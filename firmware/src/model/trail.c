@@ -2,11 +2,6 @@
 
 #define OLDEST_TICKS ((int32_t)1 << 30) /* ages stay well inside what a tick difference can hold */
 
-static mh_real seconds(mh_tick earlier, mh_tick later)
-{
-    return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
-}
-
 static void remove_knot(struct mh_trail *trail, int index)
 {
     for (int i = index; i + 1 < trail->count; i++) {
@@ -21,8 +16,8 @@ static void coarsen(struct mh_trail *trail, mh_tick now)
     int best = 1;
     mh_real best_share = 0.0f;
     for (int i = 1; i + 1 < trail->count; i++) {
-        const mh_real share =
-            seconds(trail->knots[i - 1].time, trail->knots[i + 1].time) / seconds(trail->knots[i - 1].time, now);
+        const mh_real share = mh_seconds_between(trail->knots[i - 1].time, trail->knots[i + 1].time) /
+                              mh_seconds_between(trail->knots[i - 1].time, now);
         if (i == 1 || share < best_share) {
             best = i;
             best_share = share;
@@ -30,8 +25,8 @@ static void coarsen(struct mh_trail *trail, mh_tick now)
     }
     const struct mh_trail_knot *middle = &trail->knots[best];
     struct mh_trail_knot *end = &trail->knots[best + 1];
-    const mh_real before = seconds(trail->knots[best - 1].time, middle->time);
-    const mh_real after = seconds(middle->time, end->time);
+    const mh_real before = mh_seconds_between(trail->knots[best - 1].time, middle->time);
+    const mh_real after = mh_seconds_between(middle->time, end->time);
     end->rate = (before * middle->rate + after * end->rate) / (before + after);
     remove_knot(trail, best);
 }
@@ -50,10 +45,11 @@ void mh_trail_append(struct mh_trail *trail, const struct mh_trail_knot *knot)
 mh_real mh_trail_segment_increment(const struct mh_trail_knot *a, const struct mh_trail_knot *b, struct mh_vec2 node,
                                    mh_tick time, mh_tick interval, mh_real diffusion_m2ps)
 {
-    struct mh_segment segment = {a->place, b->place, seconds(a->time, time), seconds(b->time, time)};
+    struct mh_segment segment = {a->place, b->place, mh_seconds_between(a->time, time),
+                                 mh_seconds_between(b->time, time)};
     mh_real increment = mh_segment_old_field(&segment, node, diffusion_m2ps);
-    segment.age_a = seconds(a->time, time - interval);
-    segment.age_b = seconds(b->time, time - interval);
+    segment.age_a = mh_seconds_between(a->time, time - interval);
+    segment.age_b = mh_seconds_between(b->time, time - interval);
     increment -= mh_segment_old_field(&segment, node, diffusion_m2ps);
     return b->rate * increment;
 }

@@ -28,11 +28,6 @@ struct instant {
     size_t count;
 };
 
-static mh_real seconds(mh_tick earlier, mh_tick later)
-{
-    return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
-}
-
 static mh_real squared(mh_real a) { return a * a; }
 
 static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return squared(a.x - b.x) + squared(a.y - b.y); }
@@ -282,7 +277,8 @@ static enum mh_status second_start(struct mh_trail_fit *fit, int from, struct mh
     }
     const struct mh_vec2 start = knots[from].place;
     for (int k = from + 1; k < fit->knot_count; k++) {
-        const mh_real share = seconds(knots[from].time, knots[k].time) / seconds(knots[from].time, newest(fit)->time);
+        const mh_real share = mh_seconds_between(knots[from].time, knots[k].time) /
+                              mh_seconds_between(knots[from].time, newest(fit)->time);
         fit->knots[k].place.x = start.x + share * (centre.x - start.x);
         fit->knots[k].place.y = start.y + share * (centre.y - start.y);
     }
@@ -349,8 +345,8 @@ static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct m
     const struct mh_trail_fit *fit = &track->fit;
     const int m = fit->knot_count - 1;
     const struct mh_fit_knot *last = &fit->knots[m], *older = last - 1;
-    const mh_real duration = seconds(older->time, last->time), ahead = seconds(last->time, time);
-    const mh_real interval = seconds(0, fit->model.interval);
+    const mh_real duration = mh_seconds_between(older->time, last->time), ahead = mh_seconds_between(last->time, time);
+    const mh_real interval = mh_seconds_between(0, fit->model.interval);
     estimate->origin = track->origin;
     estimate->time = time;
     estimate->velocity.x = (last->place.x - older->place.x) / duration;
