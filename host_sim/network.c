@@ -199,7 +199,8 @@ int network_make(struct network *network, const struct network_config *config, c
     learn_fingerprints(network);
     network->alarms = malloc(network->count * sizeof *network->alarms);
     if (!network->alarms || make_radio(network) ||
-        host_in_process(&network->host, network->count, config->protocol.protocol, &port, network)) {
+        host_in_process(&network->host, network->count, network->radio.position, config->protocol.protocol, &port,
+                        network)) {
         snprintf(error, error_size, "out of memory for %zu nodes", nodes);
         network_free(network);
         return -1;

@@ -36,9 +36,11 @@ struct host {
     void (*destroy)(void *state);
 };
 
-/* Motes of this process: the firmware library's own, `count` of them in one block of memory, each beside its protocol's state. `port` and
- * `context` outlive the host. Returns 0, or -1 if there is no memory. */
-int host_in_process(struct host *host, uint32_t count, const struct mh_protocol *protocol, const struct host_port *port,
-                    void *context);
+/* Motes of this process: the firmware library's own, `count` of them in one block of memory, each beside its protocol's
+ * state. Mote i lies at place order[i] of the block, a permutation of 0 ... count - 1: where motes that hear each other
+ * lie side by side, a broadcast finds them in few pages of memory. `order`, `port` and `context` outlive the host.
+ * Returns 0, or -1 if there is no memory. */
+int host_in_process(struct host *host, uint32_t count, const uint32_t *order, const struct mh_protocol *protocol,
+                    const struct host_port *port, void *context);
 
 #endif

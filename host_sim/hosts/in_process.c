@@ -32,13 +32,14 @@ struct in_process {
     void *context;
     struct head_memory *heads;
     uint32_t count;
+    const uint32_t *order;
     size_t slot_size;
     unsigned char *slots;
 };
 
 static struct slot *slot_of(const struct in_process *host, uint32_t mote)
 {
-    return (struct slot *)(void *)(host->slots + mote * host->slot_size);
+    return (struct slot *)(void *)(host->slots + host->order[mote] * host->slot_size);
 }
 
 static void transmit(void *context, mh_node_id destination, const uint8_t *frame, size_t length)
@@ -146,7 +147,7 @@ static void destroy(void *state)
     free(host);
 }
 
-int host_in_process(struct host *host, uint32_t mote_count, const struct mh_protocol *protocol,
+int host_in_process(struct host *host, uint32_t mote_count, const uint32_t *order, const struct mh_protocol *protocol,
                     const struct host_port *port, void *context)
 {
     struct in_process *state = calloc(1, sizeof *state);
@@ -157,6 +158,7 @@ int host_in_process(struct host *host, uint32_t mote_count, const struct mh_prot
     state->port = *port;
     state->context = context;
     state->count = mote_count;
+    state->order = order;
     state->slot_size = sizeof(struct slot) + units * sizeof(union any);
     state->slots = calloc(mote_count, state->slot_size);
     if (!state->slots) {
