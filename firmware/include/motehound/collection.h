@@ -4,7 +4,8 @@
  * at once. A node takes as parent the sender with the fewest hops of the newest round, and relays the beacon after a short
  * pseudo-random wait unless it has meanwhile heard `suppress_after` others relay it with no more hops than its own would carry:
  * so the number of relays depends on the area, not on how many nodes stand in it (counter-based suppression, Ni et al., "The
- * broadcast storm problem", 1999). A node that two rounds have missed broadcasts a beacon of no sink; its neighbours answer
+ * broadcast storm problem", 1999). A path of the same round that turns out shorter is taken, but relayed again only where it saves
+ * an eighth of the hops. A node that two rounds have missed broadcasts a beacon of no sink; its neighbours answer
  * with theirs. So do the neighbours of a sink that has been restarted and counts its rounds from 1: it goes on from the round they know.
  *
  * Requests travel from the head towards a place: of all that hear one, the node nearest to the centre waits least and relays,

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#define NEWS_SHARE 8 /* a path shorter by this part of its hops is worth another relay within a round */
+
 static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a : b; }
 
 static bool has_come(mh_tick time, mh_tick now) { return !mh_tick_before(now, time); }
@@ -109,8 +111,18 @@ static bool is_better(const struct mh_collection *c, const mh_beacon_t *beacon)
     return newer == 0 ? nearer : newer > 0 || c->stale;
 }
 
+/* Where many relay, paths get shorter hop by hop as later beacons come in. Those farther out need not hear of each: they
+ * want a parent nearer than themselves, and that it stays. */
+static bool is_news(const struct mh_collection *c, const mh_beacon_t *beacon)
+{
+    const bool same =
+        c->joined && !c->stale && (mh_node_id)beacon->sink == c->sink && (uint16_t)beacon->round == c->round;
+    return !same || c->beacon_waits || (c->hops - (beacon->hops + 1)) * NEWS_SHARE >= c->hops;
+}
+
 static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon)
 {
+    const bool news = is_news(c, beacon);
     c->sink = (mh_node_id)beacon->sink;
     c->parent = (mh_node_id)beacon->sender;
     c->round = (uint16_t)beacon->round;
@@ -118,7 +130,9 @@ static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon
     c->joined = true;
     c->stale = false;
     c->upkeep_time = now + 2 * c->config->beacon_period + spread(c, c->config->beacon_period);
-    wait_to_relay_beacon(c, now);
+    if (news) {
+        wait_to_relay_beacon(c, now);
+    }
     if (c->tracking != (beacon->tracking != 0)) {
         c->tracking = !c->tracking;
         c->node->port->tracking(c->node->context, c->tracking);

@@ -196,6 +196,25 @@ static void a_beacon_is_relayed_unless_others_do(void)
     TEST_ASSERT_FALSE(state.beacon_waits);
 }
 
+static void a_path_hardly_shorter_is_taken_and_not_relayed_again(void)
+{
+    hear_beacon(1, 7, 1, 20);
+    collection->timer(&state, 1000);
+    TEST_ASSERT_EQUAL_UINT(1, saw.sent);
+    hear_beacon(2, 7, 1, 18); /* 19 hops instead of 21 */
+    TEST_ASSERT_EQUAL_UINT32(2, state.parent);
+    TEST_ASSERT_EQUAL_UINT8(19, state.hops);
+    collection->timer(&state, 2000);
+    TEST_ASSERT_EQUAL_UINT(1, saw.sent);
+    hear_beacon(3, 7, 1, 15); /* 16 instead of 19 */
+    collection->timer(&state, 3000);
+    TEST_ASSERT_EQUAL_UINT(2, saw.sent);
+    TEST_ASSERT_EQUAL_UINT8(16, saw.message.as.beacon.hops);
+    hear_beacon(3, 7, 2, 15); /* a new round is news whatever the path */
+    collection->timer(&state, 4000);
+    TEST_ASSERT_EQUAL_UINT(3, saw.sent);
+}
+
 static void a_node_without_a_path_asks_and_is_answered(void)
 {
     const mh_tick patience = saw.timer;
@@ -330,6 +349,7 @@ int main(void)
     RUN_TEST(a_sink_that_begins_anew_is_told_its_round);
     RUN_TEST(the_nearer_of_two_sinks_wins);
     RUN_TEST(a_beacon_is_relayed_unless_others_do);
+    RUN_TEST(a_path_hardly_shorter_is_taken_and_not_relayed_again);
     RUN_TEST(a_node_without_a_path_asks_and_is_answered);
     RUN_TEST(reports_go_up_and_never_in_circles);
     RUN_TEST(a_request_is_relayed_once_and_only_where_it_helps);
