@@ -263,7 +263,7 @@ int network_run(struct network *network, sim_time end, const volatile sig_atomic
             radio_land(&network->radio, index, receive, network);
             break;
         }
-        if (stop && *stop) {
+        if (stop && __atomic_load_n(stop, __ATOMIC_RELAXED)) {
             snprintf(error, error_size, "stopped at %.3f s", network_time_s(network));
             return -1;
         }

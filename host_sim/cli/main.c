@@ -21,7 +21,7 @@ static volatile sig_atomic_t stop;
 static void on_signal(int number)
 {
     (void)number;
-    stop = 1;
+    __atomic_store_n(&stop, 1, __ATOMIC_RELAXED); /* other threads look at it */
 }
 
 static int dispatch(const char *name, struct command *command)
