@@ -33,8 +33,8 @@
 #ifndef MH_DIFFUSION_STRONG
 #define MH_DIFFUSION_STRONG (MH_DIFFUSION_SMALL ? 5 : 8)
 #endif
-#ifndef MH_DIFFUSION_TRAIL
-#define MH_DIFFUSION_TRAIL (MH_DIFFUSION_SMALL ? 14 : 60)
+#ifndef MH_TRAIL_KNOTS_MAX
+#define MH_TRAIL_KNOTS_MAX (MH_DIFFUSION_SMALL ? 14 : 60)
 #endif
 
 /* Its track ends after so many intervals without any measurement near it, or so many instants in succession with measurements but without a
@@ -71,8 +71,8 @@
 #if MH_DIFFUSION_NEAR < 3 || MH_DIFFUSION_NEAR > 32 || MH_DIFFUSION_STRONG < 3 || MH_DIFFUSION_STRONG > 32
 #error "MH_DIFFUSION_NEAR and MH_DIFFUSION_STRONG must be 3 to 32"
 #endif
-#if MH_DIFFUSION_TRAIL < 4 || MH_DIFFUSION_TRAIL > 250
-#error "MH_DIFFUSION_TRAIL must be 4 to 250: its knots thin out with age, so more buy nothing"
+#if MH_TRAIL_KNOTS_MAX < 4 || MH_TRAIL_KNOTS_MAX > 250
+#error "MH_TRAIL_KNOTS_MAX must be 4 to 250: its knots thin out with age, so more buy nothing"
 #endif
 #if MH_DIFFUSION_COAST < 1 || MH_DIFFUSION_COAST > 250 || MH_DIFFUSION_SILENCE < 1 || MH_DIFFUSION_SILENCE > 250
 #error "MH_DIFFUSION_COAST and MH_DIFFUSION_SILENCE must be 1 to 250: intervals of up to an hour, counted in ticks"

@@ -46,7 +46,9 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
 /* When the instant being gathered is to be closed. */
 mh_tick mh_head_deadline(const struct mh_head *head);
 
-/* Close it: step the tracker with its measurements, go on to the next instant.
+/* Close it: step the tracker with its measurements, go on to the next instant. Instants are closed one by one, none is left
+ * out: the interval must be longer than the tracker's step takes on the board, or the head falls behind for good and
+ * measurements count as early.
  * Errors: MH_NONE (no position at this instant), or what the tracker's step returns; the next instant is gathered all the same. */
 enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate);
 

@@ -56,7 +56,8 @@ enum mh_status mh_sensor_init(struct mh_sensor *sensor, const struct mh_sensor_c
  * increment: a reading that never came is never made up. The conversion and the difference saturate to the range of Q11.20.
  * Cost: O(MH_SENSOR_HISTORY), no division.
  * Errors: MH_ERR_RANGE (counts outside the converter's), MH_ERR_REPEATED (a sample of that time and target is kept
- * already), MH_ERR_TIME (older than all that is kept, with the history full). */
+ * already), MH_ERR_TIME (older than all that is kept, with the history full; so too after a pause of more than 24.8 days,
+ * half the range of ticks, or when a clock was set back: begin anew with mh_sensor_init then). */
 enum mh_status mh_sensor_take(struct mh_sensor *sensor, const struct mh_reading *reading, struct mh_sample *sample);
 
 /* True if the sample is the one of `instant`: taken within interval/4 of it. */

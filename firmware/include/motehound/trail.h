@@ -17,7 +17,7 @@ struct mh_trail_knot {
 };
 
 struct mh_trail {
-    struct mh_trail_knot knots[MH_DIFFUSION_TRAIL]; /* oldest first */
+    struct mh_trail_knot knots[MH_TRAIL_KNOTS_MAX]; /* oldest first */
     int count;
 };
 

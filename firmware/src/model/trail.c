@@ -33,7 +33,7 @@ static void coarsen(struct mh_trail *trail, mh_tick now)
 
 void mh_trail_append(struct mh_trail *trail, const struct mh_trail_knot *knot)
 {
-    if (trail->count == MH_DIFFUSION_TRAIL) {
+    if (trail->count == MH_TRAIL_KNOTS_MAX) {
         coarsen(trail, knot->time);
     }
     if (trail->count > 0 && mh_ticks_between(trail->knots[0].time, knot->time) > OLDEST_TICKS) {

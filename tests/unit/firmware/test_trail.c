@@ -16,13 +16,13 @@ static struct mh_trail_knot knot_at(int second)
 
 static void a_full_trail_still_holds_the_whole_path(void)
 {
-    const int seconds = 3 * MH_DIFFUSION_TRAIL;
+    const int seconds = 3 * MH_TRAIL_KNOTS_MAX;
     trail.count = 0;
     for (int k = 0; k <= seconds; k++) {
         const struct mh_trail_knot knot = knot_at(k);
         mh_trail_append(&trail, &knot);
     }
-    TEST_ASSERT_EQUAL_INT(MH_DIFFUSION_TRAIL, trail.count);
+    TEST_ASSERT_EQUAL_INT(MH_TRAIL_KNOTS_MAX, trail.count);
     TEST_ASSERT_EQUAL_UINT32(0, trail.knots[0].time);
     mh_real mass = 0.0f;
     for (int k = 1; k < trail.count; k++) {
