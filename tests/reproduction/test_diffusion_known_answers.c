@@ -1,4 +1,5 @@
 /* The sliding-window fit against the same method computed in double precision: three whole runs; and what loss does to one of them. */
+#include "known_answers.h"
 #include "motehound/diffusion.h"
 #include "port.h"
 #include "unity.h"
@@ -8,38 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FOLDER MOTEHOUND_KNOWN_ANSWERS "/luo/"
 #define COLUMNS 16
 #define OUTPUTS_MAX 200
 #define IGNORED_OUTPUTS 3 /* how a track settles is its start's affair */
 
 void setUp(void) {}
 void tearDown(void) {}
-
-static FILE *open_answers(const char *name)
-{
-    char path[1024];
-    snprintf(path, sizeof path, FOLDER "%s", name);
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE("tests/known_answers/luo is incomplete");
-    }
-    return file;
-}
-
-/* All floats of a file. The files are little-endian, as is every host that the simulator is built for. */
-static float *floats(const char *name, size_t *count)
-{
-    FILE *file = open_answers(name);
-    fseek(file, 0, SEEK_END);
-    *count = (size_t)ftell(file) / sizeof(float);
-    rewind(file);
-    float *values = malloc(*count * sizeof *values);
-    TEST_ASSERT_NOT_NULL(values);
-    TEST_ASSERT_EQUAL_size_t(*count, fread(values, sizeof *values, *count, file));
-    fclose(file);
-    return values;
-}
 
 struct answer {
     double time, true_x, true_y, x, y;
@@ -53,11 +28,7 @@ static size_t read_track(const char *name, struct answer *answers)
     TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, file));
     while (fgets(line, sizeof line, file) != NULL && count < OUTPUTS_MAX) {
         double v[COLUMNS];
-        int n = 0;
-        for (char *field = strtok(line, ",\r\n"); field != NULL && n < COLUMNS; field = strtok(NULL, ",\r\n")) {
-            v[n++] = strtod(field, NULL);
-        }
-        TEST_ASSERT_EQUAL_INT(COLUMNS, n);
+        TEST_ASSERT_EQUAL_size_t(COLUMNS, read_numbers(line, v, COLUMNS));
         const struct answer answer = {v[1], v[12], v[13], v[14], v[15]};
         answers[count++] = answer;
     }
@@ -120,10 +91,10 @@ static void load(struct run *run)
 {
     char file[64];
     snprintf(file, sizeof file, "%s_X.f32", run->name);
-    run->places = floats(file, &run->nodes);
+    run->places = read_floats(file, &run->nodes);
     run->nodes /= 2;
     snprintf(file, sizeof file, "%s_C.f32", run->name);
-    run->readings = floats(file, &run->samples);
+    run->readings = read_floats(file, &run->samples);
     run->samples /= run->nodes;
     snprintf(file, sizeof file, "%s_track.csv", run->name);
     run->outputs = read_track(file, run->answers);

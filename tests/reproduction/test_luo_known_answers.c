@@ -1,4 +1,5 @@
 /* Luo's method against answers computed in double precision: 40 single solutions of Eq. (10) and three whole runs of Algorithm 1. */
+#include "known_answers.h"
 #include "motehound/luo.h"
 #include "motehound/puff_fit.h"
 #include "port.h"
@@ -9,32 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FOLDER MOTEHOUND_KNOWN_ANSWERS "/luo/"
 #define LINE_MAX_CHARS 4096
 
 void setUp(void) {}
 void tearDown(void) {}
-
-static FILE *open_answers(const char *name)
-{
-    char path[1024];
-    snprintf(path, sizeof path, FOLDER "%s", name);
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE("tests/known_answers/luo is incomplete");
-    }
-    return file;
-}
-
-/* The comma-separated numbers of one line; returns how many. */
-static size_t numbers(char *line, double *values, size_t capacity)
-{
-    size_t count = 0;
-    for (char *field = strtok(line, ",\r\n"); field != NULL && count < capacity; field = strtok(NULL, ",\r\n")) {
-        values[count++] = strtod(field, NULL);
-    }
-    return count;
-}
 
 static void solutions_of_equation_10(void)
 {
@@ -45,7 +24,7 @@ static void solutions_of_equation_10(void)
     int bounded = 0;
     while (fgets(line, sizeof line, file) != NULL) {
         double v[10 + 3 * 100];
-        const size_t count = numbers(line, v, sizeof v / sizeof v[0]);
+        const size_t count = read_numbers(line, v, sizeof v / sizeof v[0]);
         const size_t q = (size_t)v[5];
         TEST_ASSERT_EQUAL_size_t(10 + 3 * q, count);
         struct mh_puff_sample samples[100];
@@ -76,20 +55,6 @@ static void solutions_of_equation_10(void)
     TEST_ASSERT_EQUAL_INT(14, bounded);
 }
 
-/* All floats of a file. The files are little-endian, as is every host that the simulator is built for. */
-static float *floats(const char *name, size_t *count)
-{
-    FILE *file = open_answers(name);
-    fseek(file, 0, SEEK_END);
-    *count = (size_t)ftell(file) / sizeof(float);
-    rewind(file);
-    float *values = malloc(*count * sizeof *values);
-    TEST_ASSERT_NOT_NULL(values);
-    TEST_ASSERT_EQUAL_size_t(*count, fread(values, sizeof *values, *count, file));
-    fclose(file);
-    return values;
-}
-
 enum { N, T, Q, FLAG, PRE_X, PRE_Y, TAU, FILTERED, FIL_X, FIL_Y, COLUMNS = 16 };
 
 /* How far the tracker is from the answers over one run. */
@@ -105,10 +70,10 @@ static struct deviation run(const char *name, mh_tick interval)
     char file_name[32];
     size_t count;
     snprintf(file_name, sizeof file_name, "%s_X.f32", name);
-    float *places = floats(file_name, &count);
+    float *places = read_floats(file_name, &count);
     const size_t nodes = count / 2;
     snprintf(file_name, sizeof file_name, "%s_C.f32", name);
-    float *readings = floats(file_name, &count);
+    float *readings = read_floats(file_name, &count);
     const size_t samples = count / nodes;
     struct mh_measurement *measurements = calloc(nodes, sizeof *measurements);
     mh_q20 *previous = calloc(nodes, sizeof *previous);
@@ -147,7 +112,7 @@ static struct deviation run(const char *name, mh_tick interval)
         snprintf(message, sizeof message, "%s, position %d", name, deviation.rows + 1);
         TEST_ASSERT_NOT_NULL_MESSAGE(fgets(line, sizeof line, answers), message);
         double row[COLUMNS];
-        TEST_ASSERT_EQUAL_size_t(COLUMNS, numbers(line, row, COLUMNS));
+        TEST_ASSERT_EQUAL_size_t(COLUMNS, read_numbers(line, row, COLUMNS));
         deviation.rows++;
         TEST_ASSERT_EQUAL_INT_MESSAGE((int)row[N], deviation.rows, message);
         TEST_ASSERT_EQUAL_INT_MESSAGE(lround(1000.0 * row[T]), time, message);
