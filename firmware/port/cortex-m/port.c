@@ -13,9 +13,6 @@ extern uint8_t __stack_limit[];
 
 int main(void);
 
-enum { SYS_WRITEC = 0x03, SYS_WRITE0 = 0x04, SYS_EXIT_EXTENDED = 0x20 };
-#define APPLICATION_EXIT 0x20026u /* ADP_Stopped_ApplicationExit */
-
 static void semihost(uint32_t operation, const void *argument)
 {
     register uint32_t r0 __asm__("r0") = operation;
@@ -23,20 +20,7 @@ static void semihost(uint32_t operation, const void *argument)
     __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory", "cc");
 }
 
-void port_putc(int c)
-{
-    char character = (char)c;
-    semihost(SYS_WRITEC, &character);
-}
-
-void port_puts(const char *s) { semihost(SYS_WRITE0, s); }
-
-void port_exit(int status)
-{
-    const uint32_t block[2] = {APPLICATION_EXIT, (uint32_t)status};
-    semihost(SYS_EXIT_EXTENDED, block);
-    for (;;) {}
-}
+#include "semihosting.h"
 
 #define STACK_POINTER() ((uint8_t *)__builtin_frame_address(0))
 #define STACK_LIMIT __stack_limit

@@ -8,9 +8,6 @@ extern uint8_t __stack_limit[]; /* from the linker script */
 
 int main(void);
 
-enum { SYS_WRITEC = 0x03, SYS_WRITE0 = 0x04, SYS_EXIT_EXTENDED = 0x20 };
-#define APPLICATION_EXIT 0x20026u /* ADP_Stopped_ApplicationExit */
-
 /* The three instructions mark an ebreak as a call to the host; they must be uncompressed and share a page. */
 static void semihost(uint32_t operation, const void *argument)
 {
@@ -24,20 +21,7 @@ static void semihost(uint32_t operation, const void *argument)
                      : "memory");
 }
 
-void port_putc(int c)
-{
-    char character = (char)c;
-    semihost(SYS_WRITEC, &character);
-}
-
-void port_puts(const char *s) { semihost(SYS_WRITE0, s); }
-
-void port_exit(int status)
-{
-    const uint32_t block[2] = {APPLICATION_EXIT, (uint32_t)status};
-    semihost(SYS_EXIT_EXTENDED, block);
-    for (;;) {}
-}
+#include "semihosting.h"
 
 #define STACK_POINTER() ((uint8_t *)__builtin_frame_address(0))
 #define STACK_LIMIT __stack_limit
