@@ -21,6 +21,11 @@ static inline mh_real mh_min(mh_real a, mh_real b) { return a < b ? a : b; }
 static inline mh_real mh_max(mh_real a, mh_real b) { return a > b ? a : b; }
 static inline mh_real mh_clamp(mh_real a, mh_real low, mh_real high) { return mh_min(mh_max(a, low), high); }
 
+static inline mh_real mh_squared(mh_real a) { return a * a; }
+
+/* True if low <= a <= high; false for NaN. */
+static inline bool mh_within(mh_real a, mh_real low, mh_real high) { return a >= low && a <= high; }
+
 /* True unless a is NaN or infinite. */
 static inline bool mh_finite(mh_real a) { return mh_abs(a) <= 3.4e38f; }
 

@@ -11,8 +11,6 @@
 
 static int unknowns(const struct mh_trail_fit *fit) { return 2 * fit->knot_count + 2; }
 
-static mh_real squared(mh_real a) { return a * a; }
-
 static mh_real interval_s(const struct mh_trail_fit *fit) { return mh_seconds_between(0, fit->model.interval); }
 
 /* rho(r) = r^2 inside, 2 h r - h^2 outside, and the weight that makes r^2 * weight the same slope. */
@@ -144,7 +142,7 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real *normal, mh_real *gra
         const struct mh_fit_row *row = &fit->rows[i];
         mh_real j[MH_FIT_UNKNOWNS], weight;
         const mh_real excess = row_model(fit, row, rates, j) - row->increment;
-        const mh_real information = 1.0f / (row->variance + squared(BASE_ERROR * row->base));
+        const mh_real information = 1.0f / (row->variance + mh_squared(BASE_ERROR * row->base));
         data_cost += huber(excess * mh_sqrt(information), DATA_HUBER, &weight);
         accumulate(normal, gradient, 0, n, j, weight * information, excess);
     }
@@ -168,10 +166,10 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real *normal, mh_real *gra
     const mh_real prior[2][2] = {{fit->log_rate - fit->prior_log_rate, fit->log_rate_sd},
                                  {fit->log_rate_step, fit->log_rate_step_sd}};
     for (int i = 0; i < 2; i++) {
-        const mh_real weight = 1.0f / squared(prior[i][1]);
+        const mh_real weight = 1.0f / mh_squared(prior[i][1]);
         const mh_real one = 1.0f;
         accumulate(normal, gradient, n - 2 + i, 1, &one, weight, prior[i][0]);
-        cost += weight * squared(prior[i][0]);
+        cost += weight * mh_squared(prior[i][0]);
     }
     return cost;
 }
@@ -323,7 +321,7 @@ void mh_trail_fit_start(struct mh_trail_fit *fit, struct mh_vec2 place, mh_real 
     fit->knots[1] = second;
     fit->prior_place = place;
     fit->log_rate_step = 0.0f;
-    fit->prior_information.xx = fit->prior_information.yy = 1.0f / squared(sd_m);
+    fit->prior_information.xx = fit->prior_information.yy = 1.0f / mh_squared(sd_m);
     fit->prior_information.xy = 0.0f;
 }
 
@@ -377,7 +375,7 @@ void mh_trail_fit_advance(struct mh_trail_fit *fit, mh_tick time)
     fit->log_rate = mh_clamp(fit->log_rate + fit->log_rate_step, fit->bounds.log_rate_low, fit->bounds.log_rate_high);
     fit->prior_log_rate = fit->log_rate;
     fit->log_rate_sd =
-        mh_sqrt(variance + squared(fit->log_rate_drift) *
+        mh_sqrt(variance + mh_squared(fit->log_rate_drift) *
                                mh_seconds_between(fit->knots[fit->knot_count - 1].time, time) / interval_s(fit));
     const struct mh_fit_knot *last = &fit->knots[fit->knot_count - 1];
     const struct mh_fit_knot *older = last - 1;

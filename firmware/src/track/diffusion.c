@@ -28,9 +28,7 @@ struct instant {
     size_t count;
 };
 
-static mh_real squared(mh_real a) { return a * a; }
-
-static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return squared(a.x - b.x) + squared(a.y - b.y); }
+static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return mh_squared(a.x - b.x) + mh_squared(a.y - b.y); }
 
 static void rank(struct ranking *ranking, size_t index, mh_real score)
 {
@@ -71,12 +69,10 @@ void mh_diffusion_config_default(struct mh_diffusion_config *config)
 /* The release rate may go on to change as much as it has lately: a steady one is known the better for it, and helps the position. */
 static void learn_rate_change(struct mh_diffusion *track, mh_real change)
 {
-    track->rate_change2 += 0.1f * (squared(mh_min(change, 0.2f)) - track->rate_change2);
+    track->rate_change2 += 0.1f * (mh_squared(mh_min(change, 0.2f)) - track->rate_change2);
     track->fit.log_rate_step_sd = mh_max(0.01f, mh_sqrt(track->rate_change2));
     track->fit.log_rate_drift = mh_max(track->config.release_drift, mh_sqrt(track->rate_change2));
 }
-
-static bool within(mh_real value, mh_real low, mh_real high) { return value >= low && value <= high; }
 
 static bool is_span(int32_t low_mm, int32_t high_mm)
 {
@@ -90,11 +86,12 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     if (track == NULL || c == NULL || interval < 1 || interval > 3600000u) {
         return MH_ERR_ARGUMENT;
     }
-    if (!within(c->diffusion_m2ps, 1e-4f, 1e3f) || !within(c->chi, 1e-3f, 1e3f) ||
-        !within(c->release_gps, 1e-3f, 1e5f) || !within(c->release_drift, 1e-3f, 1.0f) ||
-        !within(c->additive_sd, 1e-3f, 1e3f) || !within(c->relative_sd, 0.0f, 1.0f) ||
-        !within(c->turn_mps2, 1e-3f, 1e2f) || !within(c->speed_mps, 1e-2f, 1e3f) || !within(c->reach_m, 0.1f, 1e3f) ||
-        !is_span(c->region.x_min_mm, c->region.x_max_mm) || !is_span(c->region.y_min_mm, c->region.y_max_mm)) {
+    if (!mh_within(c->diffusion_m2ps, 1e-4f, 1e3f) || !mh_within(c->chi, 1e-3f, 1e3f) ||
+        !mh_within(c->release_gps, 1e-3f, 1e5f) || !mh_within(c->release_drift, 1e-3f, 1.0f) ||
+        !mh_within(c->additive_sd, 1e-3f, 1e3f) || !mh_within(c->relative_sd, 0.0f, 1.0f) ||
+        !mh_within(c->turn_mps2, 1e-3f, 1e2f) || !mh_within(c->speed_mps, 1e-2f, 1e3f) ||
+        !mh_within(c->reach_m, 0.1f, 1e3f) || !is_span(c->region.x_min_mm, c->region.x_max_mm) ||
+        !is_span(c->region.y_min_mm, c->region.y_max_mm)) {
         return MH_ERR_ARGUMENT;
     }
     track->config = *c;
@@ -126,12 +123,13 @@ static mh_real noise_variance(const struct mh_diffusion_config *config, const st
 {
     const mh_real now = mh_q20_to_real(m->value);
     const mh_real before = now - mh_q20_to_real(m->increment);
-    return 2.0f * squared(config->additive_sd) + squared(config->relative_sd) * (squared(now) + squared(before));
+    return 2.0f * mh_squared(config->additive_sd) +
+           mh_squared(config->relative_sd) * (mh_squared(now) + mh_squared(before));
 }
 
 static mh_real significance(const struct mh_diffusion_config *config, const struct mh_measurement *m)
 {
-    return mh_q20_to_real(m->increment) / mh_sqrt(noise_variance(config, m) + squared(0.25f * config->chi));
+    return mh_q20_to_real(m->increment) / mh_sqrt(noise_variance(config, m) + mh_squared(0.25f * config->chi));
 }
 
 static bool is_strong(const struct mh_diffusion_config *config, const struct mh_measurement *m)
@@ -157,7 +155,7 @@ static struct cluster find_cluster(const struct mh_diffusion *track, const struc
 {
     struct ranking strong;
     struct cluster cluster = {false, {0.0f, 0.0f}};
-    const mh_real radius2 = squared(0.625f * track->config.reach_m);
+    const mh_real radius2 = mh_squared(0.625f * track->config.reach_m);
     mh_real best = 0.0f;
     rank_strong(&track->config, now, CLUSTER_CANDIDATES, &strong);
     for (int i = 0; i < strong.count; i++) {
@@ -195,7 +193,7 @@ static void add_row(struct mh_diffusion *track, const struct mh_measurement *m)
     for (int i = 0; i < track->since && i < 16; i++) {
         unknown_past *= 0.5f;
     }
-    const mh_real variance = noise_variance(&track->config, m) + squared(unknown_past);
+    const mh_real variance = noise_variance(&track->config, m) + mh_squared(unknown_past);
     if (mh_trail_fit_add_row(&track->fit, mh_place_relative(&m->place, &track->origin), mh_q20_to_real(m->increment),
                              variance) == MH_OK) {
         track->used++;
@@ -210,7 +208,7 @@ static void add_rows(struct mh_diffusion *track, const struct instant *now, stru
     for (size_t i = 0; i < now->count; i++) {
         const struct mh_measurement *m = &now->measurements[i];
         const mh_real d2 = distance2(mh_place_relative(&m->place, &track->origin), centre);
-        if (has_increment(m) && d2 <= squared(radius)) {
+        if (has_increment(m) && d2 <= mh_squared(radius)) {
             rank(&near, i, -d2);
         }
     }
@@ -301,7 +299,7 @@ static bool is_lost(struct mh_diffusion *track, const struct cluster *cluster)
 {
     const mh_real bad = misfit(&track->fit);
     const bool astray =
-        cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > squared(track->config.reach_m);
+        cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > mh_squared(track->config.reach_m);
     const mh_real normal = mh_max(1.0f, track->usual_misfit);
     track->usual_misfit += 0.05f * (mh_min(bad, 4.0f * normal) - track->usual_misfit);
     track->doubtful = bad > 6.0f * normal ? track->doubtful + 1 : 0;
@@ -327,7 +325,7 @@ static enum mh_status follow(struct mh_diffusion *track, const struct instant *n
     enum mh_status status = mh_trail_fit_solve(fit);
     if (status == MH_OK && cluster.found &&
         (misfit(fit) > 1.0f ||
-         distance2(newest(fit)->place, cluster.centre) > squared(0.25f * track->config.reach_m))) {
+         distance2(newest(fit)->place, cluster.centre) > mh_squared(0.25f * track->config.reach_m))) {
         status = second_start(fit, fit->knot_count - 2, cluster.centre);
         if (status == MH_OK && misfit(fit) > 1.0f) {
             status = second_start(fit, 0, cluster.centre);
@@ -358,7 +356,7 @@ static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct m
     estimate->raw = estimate->position;
 
     const mh_real f = ahead / duration, g = 1.0f + f, steps = ahead / interval;
-    const mh_real turns = squared(fit->model.turn_mps2 * interval * interval) * steps * (steps + 1.0f) *
+    const mh_real turns = mh_squared(fit->model.turn_mps2 * interval * interval) * steps * (steps + 1.0f) *
                           (2.0f * steps + 1.0f) * (1.0f / 6.0f);
     mh_real pp[4], pq[4], qq[4];
     mh_trail_fit_block(fit, m, m, pp);
@@ -376,10 +374,10 @@ static void ask(struct mh_diffusion *track, const struct instant *now)
     size_t answers = 0;
     for (size_t i = 0; i < now->count; i++) {
         const struct mh_vec2 place = mh_place_relative(&now->measurements[i].place, &track->origin);
-        answers += distance2(place, track->asked) <= squared(track->asked_radius) ? 1u : 0u;
+        answers += distance2(place, track->asked) <= mh_squared(track->asked_radius) ? 1u : 0u;
     }
     if (now->count > 0) {
-        const mh_real density = (mh_real)answers / (MH_PI * squared(track->asked_radius));
+        const mh_real density = (mh_real)answers / (MH_PI * mh_squared(track->asked_radius));
         track->density = track->density > 0.0f ? track->density + 0.2f * (density - track->density) : density;
     }
     struct mh_estimate last, next;
@@ -422,7 +420,7 @@ static bool is_heard(const struct mh_diffusion *track, const struct instant *now
         const struct mh_measurement *m = &now->measurements[i];
         const struct mh_vec2 place = mh_place_relative(&m->place, &track->origin);
         if (has_increment(m) &&
-            (is_strong(&track->config, m) || distance2(place, track->asked) <= squared(track->asked_radius))) {
+            (is_strong(&track->config, m) || distance2(place, track->asked) <= mh_squared(track->asked_radius))) {
             return true;
         }
     }

@@ -15,15 +15,13 @@ void mh_range_config_default(struct mh_range_config *config)
     *config = nominal;
 }
 
-static bool within(mh_real value, mh_real low, mh_real high) { return value >= low && value <= high; }
-
 static enum mh_status init(void *state, const void *config, mh_tick interval)
 {
     struct mh_range *range = state;
     const struct mh_range_config *given = config;
     if (range == NULL || given == NULL || interval < 1 || interval > 3600000u ||
-        !within(given->range_sd_m, 1e-3f, 100.0f) || !within(given->acceleration_sd_mps2, 1e-3f, 1e3f) ||
-        !within(given->height_m, -1e5f, 1e5f)) {
+        !mh_within(given->range_sd_m, 1e-3f, 100.0f) || !mh_within(given->acceleration_sd_mps2, 1e-3f, 1e3f) ||
+        !mh_within(given->height_m, -1e5f, 1e5f)) {
         return MH_ERR_ARGUMENT;
     }
     const struct mh_range begun = {.config = *given, .gate = {.sigmas = GATE_SIGMAS, .patience = GATE_PATIENCE}};
