@@ -1,6 +1,6 @@
 /* The mote: a state machine without I/O that joins a sensor, a protocol and, on a cluster head, a tracker.
  *
- * Its owner feeds it three events, a reading, a frame and an alarm, each with the time; it answers through struct
+ * Its owner feeds it four events, a reading, a frame, the fate of a frame sent and an alarm, each with the time; it answers through struct
  * mh_port. It reads no clock, owns no thread, allocates nothing and touches no global, so the same compiled code runs on a board, in
  * a test and as one of many thousands inside the simulator. Not re-entrant for one mote; different motes are independent. */
 #ifndef MOTEHOUND_MOTE_H
@@ -12,7 +12,8 @@
 
 /* What the mote asks of its owner. None of these may call back into the mote. */
 struct mh_port {
-    /* Put a frame on the air, for one neighbour or for all (MH_BROADCAST). `frame` is valid during the call only. */
+    /* Put a frame on the air, for one neighbour or for all (MH_BROADCAST), and tell its fate with mh_mote_sent. A neighbour
+     * acknowledges what is sent to it alone: that is the radio's business, as is trying again a few times. `frame` is valid during the call only. */
     void (*transmit)(void *context, mh_node_id destination, const uint8_t *frame, size_t length);
     /* Call mh_mote_alarm at `time` (at once if that is past); replaces the alarm set before. */
     void (*set_alarm)(void *context, mh_tick time);
@@ -78,6 +79,10 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
 /* A frame came in that was sent to this mote or to all: addressing is the radio's business.
  * Errors: those of mh_wire_decode (each counted; the mote goes on). */
 enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length);
+
+/* What became of the oldest frame transmitted of which this has not been told, at the time its last bit or its acknowledgement went
+ * over the air. */
+void mh_mote_sent(struct mh_mote *mote, mh_tick now, enum mh_sent outcome);
 
 /* The time asked for with set_alarm has come. Early and repeated calls do no harm. A late call is made up for: each call
  * closes one sampling instant and sets the alarm anew. */

@@ -9,9 +9,16 @@
 #include "motehound/status.h"
 #include "motehound/wire.h"
 
+/* What became of a frame that was put on the air. */
+enum mh_sent {
+    MH_SENT_OK,     /* sent to one: the neighbour has acknowledged it; sent to all: it is out */
+    MH_SENT_NO_ACK, /* the neighbour did not acknowledge it, however often the radio tried */
+    MH_SENT_BUSY    /* it never went out: the channel was not free, or the radio was full or off */
+};
+
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */
 struct mh_protocol_port {
-    /* Send to one neighbour, or to all in range (MH_BROADCAST). */
+    /* Send to one neighbour, or to all in range (MH_BROADCAST). sent() tells what became of it, in the order of sending. */
     void (*send)(void *context, mh_node_id destination, const struct mh_message *message);
     /* Call timer() at `time`; a new call replaces the earlier one. */
     void (*set_timer)(void *context, mh_tick time);
@@ -46,6 +53,8 @@ struct mh_protocol {
     void (*start)(void *state, mh_tick now);
     /* A sound message came in, sent to this mote or to all. */
     void (*message)(void *state, mh_tick now, const struct mh_message *message);
+    /* What became of the oldest message sent of which this has not been told. May be NULL. */
+    void (*sent)(void *state, mh_tick now, enum mh_sent outcome);
     /* The time set with set_timer has come. Early and repeated calls do no harm. */
     void (*timer)(void *state, mh_tick now);
     /* Hand on what this node measured. Errors: MH_ERR_NO_ROUTE. */

@@ -197,6 +197,14 @@ enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *f
     return status;
 }
 
+void mh_mote_sent(struct mh_mote *mote, mh_tick now, enum mh_sent outcome)
+{
+    if (mote->config->protocol->sent) {
+        mote->config->protocol->sent(protocol_state(mote), now, outcome);
+        set_alarm(mote, false);
+    }
+}
+
 static void close_instant(struct mh_mote *mote, mh_tick now)
 {
     struct mh_head *head = mote->config->head_state;
