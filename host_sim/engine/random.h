@@ -13,7 +13,8 @@ enum random_purpose {
     RANDOM_RELATIVE_NOISE,
     RANDOM_ADDITIVE_NOISE,
     RANDOM_READING_LOSS,
-    RANDOM_RADIO_LOSS
+    RANDOM_RADIO_LOSS,
+    RANDOM_CLOCK
 };
 
 struct random_stream {
