@@ -54,6 +54,35 @@
 #define MH_HOPS_MAX 64
 #endif
 
+/* Neighbours that a node of a geographic protocol keeps, 20 bytes each. Face routing delivers for sure where no node has more neighbours
+ * than this in the Gabriel graph (4 on average, 9 in 10,000 random nodes); more of them make greedy hops longer in a dense field. */
+#ifndef MH_NEIGHBOURS_MAX
+#ifdef __AVR__
+#define MH_NEIGHBOURS_MAX 16
+#else
+#define MH_NEIGHBOURS_MAX 32
+#endif
+#endif
+
+/* Messages that wait at a node to be sent to a neighbour, some 100 bytes each, and messages it remembers having taken, so that it takes
+ * none twice, 8 bytes each. */
+#ifndef MH_LINK_QUEUE_MAX
+#ifdef __AVR__
+#define MH_LINK_QUEUE_MAX 3
+#else
+#define MH_LINK_QUEUE_MAX 8
+#endif
+#endif
+#ifndef MH_LINK_SEEN_MAX
+#define MH_LINK_SEEN_MAX 16
+#endif
+
+/* A message in an envelope that has been relayed this often is dropped and counted. The walk around a face is up to twice as many hops
+ * as the face has edges, and the outer face of a sparse field has many. */
+#ifndef MH_ROUTE_HOPS_MAX
+#define MH_ROUTE_HOPS_MAX 1024
+#endif
+
 /* Largest number of states of a Kalman filter. A filter costs 4 (n + n (n + 1) / 2) bytes, whatever part of it is used. */
 #ifndef MH_KALMAN_STATES_MAX
 #define MH_KALMAN_STATES_MAX 4
@@ -79,6 +108,15 @@
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
+#endif
+#if MH_NEIGHBOURS_MAX < 4 || MH_NEIGHBOURS_MAX > 250
+#error "MH_NEIGHBOURS_MAX must be 4 to 250: a Gabriel graph has four neighbours on average, and the table is searched linearly"
+#endif
+#if MH_LINK_QUEUE_MAX < 1 || MH_LINK_QUEUE_MAX > 100 || MH_LINK_SEEN_MAX < 1 || MH_LINK_SEEN_MAX > 250
+#error "MH_LINK_QUEUE_MAX must be 1 to 100, MH_LINK_SEEN_MAX 1 to 250: both are searched linearly"
+#endif
+#if MH_ROUTE_HOPS_MAX < 1 || MH_ROUTE_HOPS_MAX > 32767
+#error "MH_ROUTE_HOPS_MAX must be 1 to 32767: it travels as 16 bits with a sign"
 #endif
 #if MH_KALMAN_STATES_MAX < 4 || MH_KALMAN_STATES_MAX > 16
 #error                                                                                                                 \

@@ -2,7 +2,7 @@
  *
  * A frame is an LCM-encoded message of lcm_types/mh_radio.lcm (8 bytes of fingerprint, then the fields, big-endian)
  * followed by the 16-bit frame check sequence of IEEE 802.15.4 (ITU-T CRC-16, least significant byte first), at most
- * MH_FRAME_MAX bytes in all. */
+ * MH_FRAME_MAX bytes in all. A message that travels to a place has an envelope before it, encoded in the same way. */
 #ifndef MOTEHOUND_WIRE_H
 #define MOTEHOUND_WIRE_H
 
@@ -11,6 +11,9 @@
 #include "motehound/status.h"
 
 #include "mh_beacon_t.h"
+#include "mh_face_t.h"
+#include "mh_hello_t.h"
+#include "mh_landmark_t.h"
 #include "mh_report_t.h"
 #include "mh_request_t.h"
 
@@ -19,7 +22,16 @@
 
 #define MH_BROADCAST ((mh_node_id)0xFFFFFFFFu)
 
-enum mh_message_kind { MH_MESSAGE_BEACON, MH_MESSAGE_REPORT, MH_MESSAGE_REQUEST, MH_MESSAGE_KINDS };
+enum mh_message_kind {
+    MH_MESSAGE_BEACON,
+    MH_MESSAGE_REPORT,
+    MH_MESSAGE_REQUEST,
+    MH_MESSAGE_HELLO,
+    MH_MESSAGE_LANDMARK,
+    MH_MESSAGE_KINDS
+};
+
+enum mh_envelope_kind { MH_ENVELOPE_NONE, MH_ENVELOPE_ROUTE, MH_ENVELOPE_FACE, MH_ENVELOPE_KINDS };
 
 struct mh_message {
     enum mh_message_kind kind;
@@ -27,15 +39,19 @@ struct mh_message {
         mh_beacon_t beacon;
         mh_report_t report;
         mh_request_t request;
+        mh_hello_t hello;
+        mh_landmark_t landmark;
     } as;
+    enum mh_envelope_kind envelope;
+    mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */
 };
 
-/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (unknown kind). */
+/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (unknown kind or envelope). */
 enum mh_status mh_wire_encode(const struct mh_message *message, uint8_t *frame, size_t *length);
 
 /* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields
- * that no sender writes: MH_BROADCAST as sender, more than MH_HOPS_MAX hops, a place outside +- 1e9 mm, a negative radius),
- * MH_ERR_UNKNOWN (sound, but of a type this build does not know). */
+ * that no sender writes: MH_BROADCAST as sender, more than MH_HOPS_MAX hops (MH_ROUTE_HOPS_MAX in an envelope), a place outside
+ * +- 1e9 mm, a negative radius), MH_ERR_UNKNOWN (sound, but of a type this build does not know). */
 enum mh_status mh_wire_decode(const uint8_t *frame, size_t length, struct mh_message *message);
 
 /* ITU-T CRC-16 as IEEE 802.15.4 uses it: polynomial x^16 + x^12 + x^5 + 1, reflected, initial value 0. */

@@ -294,6 +294,9 @@ static void start(void *state, mh_tick now)
 static void message(void *state, mh_tick now, const struct mh_message *heard)
 {
     struct mh_collection *c = state;
+    if (heard->envelope != MH_ENVELOPE_NONE) {
+        return;
+    }
     switch (heard->kind) {
     case MH_MESSAGE_BEACON:
         hear_beacon(c, now, &heard->as.beacon);

@@ -61,6 +61,9 @@ static void start(void *state, mh_tick now)
 static void message(void *state, mh_tick now, const struct mh_message *heard)
 {
     struct mh_direct *d = state;
+    if (heard->envelope != MH_ENVELOPE_NONE) {
+        return;
+    }
     if (d->node->is_head) {
         if (heard->kind == MH_MESSAGE_REPORT) {
             struct mh_measurement measurement;

@@ -35,6 +35,17 @@ static struct mh_message example(enum mh_message_kind kind)
         message.as.report = report;
         break;
     }
+    case MH_MESSAGE_HELLO: {
+        const mh_hello_t hello = {.sender = 9, .x_mm = -1000000000, .y_mm = 1000000000, .sequence = -1};
+        message.as.hello = hello;
+        break;
+    }
+    case MH_MESSAGE_LANDMARK: {
+        const mh_landmark_t landmark = {
+            .beacon = {.sender = 7, .sink = 2, .round = 3, .hops = MH_HOPS_MAX}, .x_mm = 40, .y_mm = -50};
+        message.as.landmark = landmark;
+        break;
+    }
     default: {
         const mh_request_t request = {.sender = 1,
                                       .origin = 2,
@@ -49,6 +60,27 @@ static struct mh_message example(enum mh_message_kind kind)
         break;
     }
     }
+    return message;
+}
+
+static struct mh_message enveloped(enum mh_message_kind kind, enum mh_envelope_kind envelope)
+{
+    struct mh_message message = example(kind);
+    const mh_face_t header = {.route = {.sender = 1,
+                                        .origin = 2,
+                                        .destination = -1,
+                                        .x_mm = 3,
+                                        .y_mm = -4,
+                                        .sequence = INT16_MIN,
+                                        .hops = MH_ROUTE_HOPS_MAX},
+                              .sender_x_mm = 5,
+                              .sender_y_mm = 6,
+                              .entry = 7,
+                              .entry_x_mm = -8,
+                              .entry_y_mm = 9,
+                              .first = 10};
+    message.envelope = envelope;
+    message.header = header;
     return message;
 }
 
@@ -118,10 +150,46 @@ static void every_kind_makes_the_round_trip(void)
     TEST_ASSERT_EQUAL_INT32(-7, decoded.as.request.sender_y_mm);
 }
 
+static void a_neighbours_place_and_a_sinks_make_the_round_trip(void)
+{
+    const struct mh_message hello = example(MH_MESSAGE_HELLO), landmark = example(MH_MESSAGE_LANDMARK);
+    encode(&hello);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+    TEST_ASSERT_EQUAL_INT32(9, decoded.as.hello.sender);
+    TEST_ASSERT_EQUAL_INT32(-1000000000, decoded.as.hello.x_mm);
+    TEST_ASSERT_EQUAL_INT32(1000000000, decoded.as.hello.y_mm);
+    TEST_ASSERT_EQUAL_INT16(-1, decoded.as.hello.sequence);
+    encode(&landmark);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+    TEST_ASSERT_EQUAL_INT32(7, decoded.as.landmark.beacon.sender);
+    TEST_ASSERT_EQUAL_INT32(2, decoded.as.landmark.beacon.sink);
+    TEST_ASSERT_EQUAL_INT16(3, decoded.as.landmark.beacon.round);
+    TEST_ASSERT_EQUAL_INT32(40, decoded.as.landmark.x_mm);
+    TEST_ASSERT_EQUAL_INT32(-50, decoded.as.landmark.y_mm);
+    TEST_ASSERT_EQUAL(MH_ENVELOPE_NONE, decoded.envelope);
+}
+
+static void an_envelope_travels_before_every_kind(void)
+{
+    for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
+        const struct mh_message route = enveloped(kind, MH_ENVELOPE_ROUTE), face = enveloped(kind, MH_ENVELOPE_FACE);
+        encode(&route);
+        TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+        TEST_ASSERT_EQUAL(kind, decoded.kind);
+        TEST_ASSERT_EQUAL(MH_ENVELOPE_ROUTE, decoded.envelope);
+        TEST_ASSERT_EQUAL_MEMORY(&route.header.route, &decoded.header.route, sizeof route.header.route);
+        encode(&face);
+        TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &decoded));
+        TEST_ASSERT_EQUAL(kind, decoded.kind);
+        TEST_ASSERT_EQUAL(MH_ENVELOPE_FACE, decoded.envelope);
+        TEST_ASSERT_EQUAL_MEMORY(&face.header, &decoded.header, sizeof face.header);
+    }
+}
+
 static void every_single_bit_counts(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
-        const struct mh_message message = example(kind);
+        const struct mh_message message = enveloped(kind, MH_ENVELOPE_FACE);
         encode(&message);
         for (size_t bit = 0; bit < 8 * length; bit++) {
             frame[bit / 8] = (uint8_t)(frame[bit / 8] ^ 1u << bit % 8);
@@ -135,10 +203,12 @@ static void every_single_bit_counts(void)
 static void every_truncation_is_refused(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
-        const struct mh_message message = example(kind);
-        encode(&message);
-        for (size_t shorter = 0; shorter < length; shorter++) {
-            TEST_ASSERT_NOT_EQUAL(MH_OK, mh_wire_decode(frame, shorter, &decoded));
+        for (int envelope = MH_ENVELOPE_NONE; envelope < MH_ENVELOPE_KINDS; envelope++) {
+            const struct mh_message message = enveloped(kind, (enum mh_envelope_kind)envelope);
+            encode(&message);
+            for (size_t shorter = 0; shorter < length; shorter++) {
+                TEST_ASSERT_NOT_EQUAL(MH_OK, mh_wire_decode(frame, shorter, &decoded));
+            }
         }
     }
 }
@@ -154,13 +224,15 @@ static void seal(size_t end)
 
 static void a_sound_frame_of_wrong_length_is_corrupt(void)
 {
-    const struct mh_message message = example(MH_MESSAGE_REPORT);
-    encode(&message);
-    const size_t right = length - 2;
-    for (size_t end = 8; end <= MH_FRAME_MAX - 2; end++) {
-        seal(end);
-        TEST_ASSERT_EQUAL(end == right ? MH_OK : MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
+    for (int envelope = MH_ENVELOPE_NONE; envelope < MH_ENVELOPE_KINDS; envelope++) {
+        const struct mh_message message = enveloped(MH_MESSAGE_REPORT, (enum mh_envelope_kind)envelope);
         encode(&message);
+        const size_t right = length - 2;
+        for (size_t end = 8; end <= MH_FRAME_MAX - 2; end++) {
+            seal(end);
+            TEST_ASSERT_EQUAL(end == right ? MH_OK : MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
+            encode(&message);
+        }
     }
     seal(MH_FRAME_MAX - 2);
     TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(frame, MH_FRAME_MAX + 1, &decoded));
@@ -183,7 +255,8 @@ static void fields_that_nobody_writes_are_corrupt(void)
 {
     struct mh_message bad[] = {example(MH_MESSAGE_BEACON),  example(MH_MESSAGE_BEACON),  example(MH_MESSAGE_BEACON),
                                example(MH_MESSAGE_REPORT),  example(MH_MESSAGE_REPORT),  example(MH_MESSAGE_REPORT),
-                               example(MH_MESSAGE_REQUEST), example(MH_MESSAGE_REQUEST), example(MH_MESSAGE_REQUEST)};
+                               example(MH_MESSAGE_REQUEST), example(MH_MESSAGE_REQUEST), example(MH_MESSAGE_REQUEST),
+                               example(MH_MESSAGE_HELLO),   example(MH_MESSAGE_LANDMARK)};
     bad[0].as.beacon.sender = -1;
     bad[1].as.beacon.hops = MH_HOPS_MAX + 1;
     bad[2].as.beacon.tracking = 2;
@@ -193,8 +266,32 @@ static void fields_that_nobody_writes_are_corrupt(void)
     bad[6].as.request.radius_mm = -1;
     bad[7].as.request.y_mm = INT32_MIN;
     bad[8].as.request.sender_x_mm = INT32_MAX;
+    bad[9].as.hello.x_mm = INT32_MIN;
+    bad[10].as.landmark.beacon.tracking = 2;
     for (uint8_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         encode(&bad[i]);
+        TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
+    }
+}
+
+static void envelopes_that_nobody_writes_are_corrupt(void)
+{
+    for (uint8_t i = 0; i < 8; i++) {
+        struct mh_message bad = enveloped(MH_MESSAGE_REPORT, MH_ENVELOPE_FACE);
+        int32_t *const fields[] = {&bad.header.route.sender, &bad.header.route.origin, &bad.header.entry,
+                                   &bad.header.first};
+        if (i < 4) {
+            *fields[i] = -1;
+        } else if (i == 4) {
+            bad.header.route.hops = -1;
+        } else if (i == 5) {
+            bad.header.route.hops = MH_ROUTE_HOPS_MAX + 1;
+        } else if (i == 6) {
+            bad.header.route.y_mm = 1000000001;
+        } else {
+            bad.header.entry_x_mm = INT32_MIN;
+        }
+        encode(&bad);
         TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(frame, length, &decoded));
     }
 }
@@ -206,6 +303,9 @@ static void unknown_kinds_are_not_encoded(void)
     length = 99;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_wire_encode(&message, frame, &length));
     TEST_ASSERT_EQUAL(99, length);
+    message = example(MH_MESSAGE_BEACON);
+    message.envelope = MH_ENVELOPE_KINDS;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_wire_encode(&message, frame, &length));
 }
 
 static void a_measurement_survives_its_report(void)
@@ -239,7 +339,8 @@ static void any_bytes_are_safe(void)
     uint32_t random = 1;
     uint16_t accepted = 0;
     for (uint16_t trial = 0; trial < 300; trial++) {
-        const struct mh_message message = example((enum mh_message_kind)(trial % MH_MESSAGE_KINDS));
+        const struct mh_message message = enveloped((enum mh_message_kind)(trial % MH_MESSAGE_KINDS),
+                                                    (enum mh_envelope_kind)(trial / 7 % MH_ENVELOPE_KINDS));
         encode(&message);
         for (size_t i = 8; i < length - 2; i++) {
             random = random * 1664525u + 1013904223u;
@@ -264,11 +365,14 @@ int main(void)
     RUN_TEST(check_sum_of_the_catalogue);
     RUN_TEST(check_sum_equals_the_division_bit_by_bit);
     RUN_TEST(every_kind_makes_the_round_trip);
+    RUN_TEST(a_neighbours_place_and_a_sinks_make_the_round_trip);
+    RUN_TEST(an_envelope_travels_before_every_kind);
     RUN_TEST(every_single_bit_counts);
     RUN_TEST(every_truncation_is_refused);
     RUN_TEST(a_sound_frame_of_wrong_length_is_corrupt);
     RUN_TEST(an_unknown_type_is_told_apart);
     RUN_TEST(fields_that_nobody_writes_are_corrupt);
+    RUN_TEST(envelopes_that_nobody_writes_are_corrupt);
     RUN_TEST(unknown_kinds_are_not_encoded);
     RUN_TEST(a_measurement_survives_its_report);
     RUN_TEST(any_bytes_are_safe);
