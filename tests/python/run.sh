@@ -1,7 +1,7 @@
 #!/bin/sh
 # run.sh SOURCE_FOLDER MOTEHOUND: pytest on tools/, or skipped (77) where its environment is absent.
 python=$1/.deps/venv/bin/python
-if ! "$python" -c 'import jinja2, matplotlib, pytest, rich, scipy' 2>/dev/null; then
+if ! "$python" -c 'import bokeh, jinja2, lcm, matplotlib, mcap, pytest, rich, scipy' 2>/dev/null; then
     echo "skipped: $python does not have the packages of tools/requirements.txt; run tools/setup"
     exit 77
 fi

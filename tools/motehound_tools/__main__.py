@@ -1,4 +1,4 @@
-"""python -m motehound_tools report | sweep | results | picture | bound"""
+"""python -m motehound_tools report | sweep | results | picture | bound | export | view"""
 
 from __future__ import annotations
 
@@ -46,6 +46,11 @@ def parser() -> argparse.ArgumentParser:
     bound = commands.add_parser("bound", help="posterior Cramer-Rao bound of an output folder's scenario")
     bound.add_argument("folder", type=Path, metavar="OUT_DIR")
     bound.add_argument("--seeds", type=int, default=4, help="deployments to average over")
+
+    export = commands.add_parser("export", help="an LCM log as CSV, MCAP or rerun's recording")
+    export.add_argument("log", type=Path, metavar="LOG.lcm")
+    export.add_argument("--to", required=True, choices=["csv", "mcap", "rerun"])
+    export.add_argument("out", type=Path, metavar="OUT", help="a file; for csv a folder, one file a channel")
 
     for one in (sweep, results, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
@@ -98,6 +103,10 @@ def perform(arguments: argparse.Namespace) -> None:
 
         picture.write(command.find(arguments.motehound), arguments.out, arguments.image)
         print(arguments.image)
+    elif arguments.command == "export":
+        from . import export
+
+        print(f"{arguments.out}: {export.write(arguments.log, arguments.to, arguments.out)}")
     elif arguments.command == "bound":
         from . import bound
         from .scenario import Scenario

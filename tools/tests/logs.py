@@ -1,0 +1,85 @@
+"""Small LCM logs with known contents, and one of the simulator."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import lcm
+import pytest
+
+from motehound_tools import command, messages
+from motehound_tools.failure import Failure
+
+BEACON = "mh.beacon_t"
+
+
+def message(name: str, **fields: Any) -> Any:
+    made = messages.named(name)()
+    for field, value in fields.items():
+        assert hasattr(made, field), field
+        setattr(made, field, value)
+    return made
+
+
+def frame(time_s: float, sender: int, destination: int = -1, kind: str = BEACON, run: int = 0) -> Any:
+    inner = message(kind).encode() + b"\x12\x34"  # a check sum, which nobody here reads
+    data = inner.ljust(127, b"\0")
+    return message(
+        "motehound.frame_t", time_s=time_s, run=run, sender=sender, destination=destination, length=len(inner), data=data
+    )
+
+
+def track(time_s: float, x: float, y: float, run: int = 0, **more: Any) -> Any:
+    known = {"true_known": True, "true_x_m": x + 3.0, "true_y_m": y - 4.0}
+    cov = {"cov_xx_m2": 4.0, "cov_xy_m2": 0.0, "cov_yy_m2": 1.0}
+    return message("motehound.track_t", time_s=time_s, run=run, x_m=x, y_m=y, **(known | cov | more))
+
+
+def small_run(run: int = 0, nodes: int = 9, seconds: int = 20, seed: int = 0) -> list[tuple[str, Any]]:
+    """A square of motes, one beacon and one report a second, a track along the diagonal."""
+    side = round(nodes**0.5)
+    found: list[tuple[str, Any]] = [
+        ("RUN_BEGIN", message("motehound.run_begin_t", run=run, seed=seed, scenario="small", version="test"))
+    ]
+    for node in range(nodes):
+        place = {"x_m": 10.0 * (node % side), "y_m": 10.0 * (node // side)}
+        found.append(("NODE", message("motehound.node_t", run=run, node=node, **place)))
+    for second in range(seconds):
+        time = float(second)
+        place = {"x_m": time + 3.0, "y_m": time - 4.0}
+        found.append(("TRUTH", message("motehound.truth_t", time_s=time, run=run, present=True, **place)))
+        found.append(("FRAME", frame(time + 0.25, second % nodes, run=run)))
+        found.append(("FRAME", frame(time + 0.5, 1 + second % (nodes - 1), 0, "mh.report_t", run=run)))
+        found.append(("TRACK", track(time, time, time, run=run)))
+    found.append(("RUN_END", message("motehound.run_end_t", time_s=float(seconds), run=run, frames_received=7)))
+    return found
+
+
+def write_log(path: Path, told: list[tuple[str, Any]]) -> Path:
+    log = lcm.EventLog(str(path), "w", overwrite=True)
+    last = 0
+    for channel, one in told:
+        if isinstance(one, bytes):
+            log.write_event(last, channel, one)
+            continue
+        last = round(one.time_s * 1e6)
+        log.write_event(last, f"MOTEHOUND_{channel}", one.encode())
+    log.close()
+    return path
+
+
+def program() -> Path:
+    try:
+        return command.find(os.environ.get("MOTEHOUND"))
+    except Failure as failure:
+        pytest.skip(str(failure))
+
+
+def simulated(folder: Path, *settings: str, runs: int = 1) -> Path:
+    """The log of luo_exp1."""
+    call = [str(program()), "run", "luo_exp1", "--log", "--out", str(folder), "--runs", str(runs)]
+    subprocess.run([*call, *settings], check=True, stdout=subprocess.DEVNULL)
+    return folder / "events.lcm"
