@@ -278,6 +278,8 @@ int network_run(struct network *network, sim_time end, const volatile sig_atomic
 void network_count(const struct network *network, struct simulation_counters *counters)
 {
     counters->events = network->events;
+    counters->energy = energy_total_unknown();
+    counters->clock_error_p99_ms = (double)NAN;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);
     counters->frames_received = network->radio.received;
     counters->frames_lost = network->radio.lost;

@@ -2,6 +2,7 @@
 #ifndef MOTEHOUND_SIM_SIMULATION_H
 #define MOTEHOUND_SIM_SIMULATION_H
 
+#include "energy/energy.h"
 #include "motehound/mote.h"
 #include "scenario/recording.h"
 #include "scenario/scenario.h"
@@ -12,6 +13,14 @@
 struct truth {
     double time_s, x_m, y_m;
     bool present; /* it is on its way (it has begun and not ended); else x_m = y_m = 0 */
+};
+
+/* How a mote is. */
+struct mote_state {
+    double energy_mj;    /* used so far */
+    double battery_left; /* share, 1 on mains */
+    bool alive;
+    double clock_error_ms; /* its network time minus the true one */
 };
 
 /* What a run tells. Any of the functions may be NULL. Called in the order of simulated time. */
@@ -28,6 +37,8 @@ struct observer {
     /* A frame goes on the air. */
     void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
                   size_t length);
+    /* Every mote, by id and the sink last, each metrics.mote_interval_s. */
+    void (*mote)(void *context, double time_s, mh_node_id id, const struct mote_state *state);
 };
 
 /* Totals of a run, beside what the observer was told. */
@@ -38,6 +49,8 @@ struct simulation_counters {
     uint64_t frames_received, frames_lost;
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
+    struct energy_totals energy; /* all NaN where energy is not accounted for */
+    double clock_error_p99_ms;   /* NaN where clocks are ideal */
 };
 
 /* Run `scenario` with `seed`. Deterministic: the same scenario, seed and library give the same calls. `stop` (may be NULL) is

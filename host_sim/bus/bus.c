@@ -1,11 +1,14 @@
 #include "bus/bus.h"
 
 #include "scenario/text.h"
+#include "totals.h"
 
 #include "motehound_frame_t.h"
+#include "motehound_mote_t.h"
 #include "motehound_node_t.h"
 #include "motehound_run_begin_t.h"
 #include "motehound_run_end_t.h"
+#include "motehound_totals_t.h"
 #include "motehound_track_t.h"
 #include "motehound_truth_t.h"
 
@@ -44,11 +47,13 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
     bus->failed = bus->failed || !sound;
 }
 
-/* Encode a message of a generated type and publish it at `at_s`. Names are short and all other fields fixed, so 1024
- * bytes hold any. */
+/* The longest message: names are short and all other fields fixed. */
+enum { ENCODED_MAX = 1024 + 64 * TOTAL_COUNT };
+
+/* Encode a message of a generated type and publish it at `at_s`. */
 #define PUBLISH(bus, channel, type, message, at_s)                                                                     \
     do {                                                                                                               \
-        uint8_t encoded[1024];                                                                                         \
+        uint8_t encoded[ENCODED_MAX];                                                                                  \
         const int encoded_length = type##_encode(encoded, 0, sizeof encoded, &(message));                              \
         if (encoded_length < 0) {                                                                                      \
             (bus)->failed = true;                                                                                      \
@@ -60,9 +65,11 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
 void bus_prepare(void)
 {
     __motehound_frame_t_get_hash();
+    __motehound_mote_t_get_hash();
     __motehound_node_t_get_hash();
     __motehound_run_begin_t_get_hash();
     __motehound_run_end_t_get_hash();
+    __motehound_totals_t_get_hash();
     __motehound_track_t_get_hash();
     __motehound_truth_t_get_hash();
 }
@@ -160,6 +167,19 @@ static void on_estimate(void *context, double time_s, const struct mh_estimate *
     PUBLISH(bus, BUS_TRACK, motehound_track_t, message, time_s);
 }
 
+static void on_mote(void *context, double time_s, mh_node_id id, const struct mote_state *state)
+{
+    struct bus *bus = context;
+    const motehound_mote_t message = {.time_s = time_s,
+                                      .run = bus->run,
+                                      .node = (int32_t)id,
+                                      .energy_mj = state->energy_mj,
+                                      .battery_left = state->battery_left,
+                                      .alive = state->alive,
+                                      .clock_error_ms = state->clock_error_ms};
+    PUBLISH(bus, BUS_MOTE, motehound_mote_t, message, message.time_s);
+}
+
 struct observer bus_observer(struct bus *bus)
 {
     const bool heard = bus->log != NULL || bus->outside != NULL;
@@ -169,6 +189,7 @@ struct observer bus_observer(struct bus *bus)
         .truth = on_truth,
         .estimate = on_estimate,
         .frame = heard ? on_frame : NULL,
+        .mote = heard ? on_mote : NULL,
     };
 }
 
@@ -182,8 +203,18 @@ void bus_begin(struct bus *bus, uint64_t seed, const char *scenario, const char 
     PUBLISH(bus, BUS_RUN_BEGIN, motehound_run_begin_t, message, message.time_s);
 }
 
+static void tell_totals(struct bus *bus, const struct simulation_counters *counters)
+{
+    double values[TOTAL_COUNT];
+    const motehound_totals_t message = {
+        .time_s = bus->time_s, .run = bus->run, .count = TOTAL_COUNT, .names = (char **)total_names, .values = values};
+    totals_of(counters, values);
+    PUBLISH(bus, BUS_TOTALS, motehound_totals_t, message, message.time_s);
+}
+
 void bus_end(struct bus *bus, const struct simulation_counters *counters)
 {
+    tell_totals(bus, counters);
     const motehound_run_end_t message = {
         .time_s = bus->time_s,
         .run = bus->run,

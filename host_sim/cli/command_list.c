@@ -1,6 +1,7 @@
 /* motehound list: what there is to run, and the keys to set. */
 #include "cli/command.h"
 #include "cli/options.h"
+#include "record/metrics.h"
 #include "scenario/folder.h"
 #include "scenario/keys.h"
 #include "scenario/text.h"
@@ -10,11 +11,12 @@
 #include <string.h>
 
 static const char help[] =
-    "motehound list [--keys]\n"
+    "motehound list [--keys | --metrics]\n"
     "\n"
     "Lists the scenarios that `motehound run` knows by name, and the trackers.\n"
-    "  --keys   list all keys of a scenario and of --set, with default, range and meaning\n"
-    "  --help   this text\n"
+    "  --keys     list all keys of a scenario and of --set, with default, range and meaning\n"
+    "  --metrics  list the metrics of runs.csv and summary.json with their meaning\n"
+    "  --help     this text\n"
     "\n"
     "Scenarios are looked for in $MOTEHOUND_SCENARIOS, then in `scenarios` beside the program, in\n"
     "../share/motehound/scenarios from it, and in the source tree.\n";
@@ -43,12 +45,36 @@ static void put_keys(void)
     }
 }
 
+static void put_metrics(void)
+{
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        printf("%-30s %s\n", metric_names[i], metric_meanings[i]);
+    }
+}
+
+static void put_scenarios_and_trackers(void)
+{
+    puts("scenarios");
+    if (scenario_list(put_scenario, NULL) == 0) {
+        puts("  none found: set MOTEHOUND_SCENARIOS to a folder of .yaml files");
+    }
+    puts("trackers");
+    const char *name, *meaning;
+    for (size_t i = 0; tracker_describe(i, &name, &meaning); i++) {
+        printf("  %-14s %s\n", name, meaning);
+    }
+}
+
+static void put_help(void) { fputs(help, stdout); }
+
 int command_list(struct command *command)
 {
-    enum { KEYS, HELP };
-    static const struct option_rule rules[] = {[KEYS] = {"--keys", false, false}, [HELP] = {"--help", false, false}};
-    struct option_reader reader = {.argc = command->argc, .argv = command->argv, .rules = rules, .rule_count = 2};
-    bool keys = false;
+    enum { KEYS, METRICS, HELP, RULES };
+    static const struct option_rule rules[RULES] = {
+        [KEYS] = {"--keys", false, false}, [METRICS] = {"--metrics", false, false}, [HELP] = {"--help", false, false}};
+    static void (*const put[RULES])(void) = {put_keys, put_metrics, put_help};
+    struct option_reader reader = {.argc = command->argc, .argv = command->argv, .rules = rules, .rule_count = RULES};
+    void (*chosen)(void) = put_scenarios_and_trackers;
     size_t rule = 0;
     const char *value = NULL;
     for (enum option_kind kind;
@@ -60,24 +86,8 @@ int command_list(struct command *command)
             fail(command->error, sizeof command->error, "motehound list: expected options only, found '%.100s'", value);
             return 1;
         }
-        if (rule == HELP) {
-            fputs(help, stdout);
-            return 0;
-        }
-        keys = true;
+        chosen = put[rule];
     }
-    if (keys) {
-        put_keys();
-        return 0;
-    }
-    puts("scenarios");
-    if (scenario_list(put_scenario, NULL) == 0) {
-        puts("  none found: set MOTEHOUND_SCENARIOS to a folder of .yaml files");
-    }
-    puts("trackers");
-    const char *name, *meaning;
-    for (size_t i = 0; tracker_describe(i, &name, &meaning); i++) {
-        printf("  %-14s %s\n", name, meaning);
-    }
+    chosen();
     return 0;
 }

@@ -283,6 +283,17 @@ static int lifetimes(const struct energy *energy, struct energy_totals *totals)
     return 0;
 }
 
+struct energy_totals energy_total_unknown(void)
+{
+    struct energy_totals totals = {.lifetime_s = (double)NAN, .lifetime_half_s = (double)NAN};
+    for (int state = 0; state < ENERGY_STATES; state++) {
+        for (int cause = 0; cause < ENERGY_CAUSES; cause++) {
+            totals.joules[state][cause] = (double)NAN;
+        }
+    }
+    return totals;
+}
+
 int energy_total(const struct energy *energy, sim_time now, struct energy_totals *totals)
 {
     *totals = (struct energy_totals){0};

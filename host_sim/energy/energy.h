@@ -109,6 +109,9 @@ struct energy_totals {
     double lifetime_s, lifetime_half_s; /* until the first, and half of the motes with batteries died; else NaN */
 };
 
+/* Totals of a run whose energy is not accounted for. */
+struct energy_totals energy_total_unknown(void);
+
 /* Of all motes but the one on mains. Returns 0, or -1 if there is no memory. */
 int energy_total(const struct energy *energy, sim_time now, struct energy_totals *totals);
 

@@ -1,34 +1,18 @@
 #include "record/metrics.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { TARGETS = 256 };
 
-const char *const metric_names[METRIC_COUNT] = {
-    [METRIC_POSITION_RMSE_M] = "position_rmse_m",
-    [METRIC_POSITION_MEDIAN_M] = "position_median_m",
-    [METRIC_POSITION_P95_M] = "position_p95_m",
-    [METRIC_RAW_POSITION_RMSE_M] = "raw_position_rmse_m",
-    [METRIC_POSITION_RMSE_AT_ARRIVAL_M] = "position_rmse_at_arrival_m",
-    [METRIC_NEES_MEDIAN] = "nees_median",
-    [METRIC_TRACKED_SHARE] = "tracked_share",
-    [METRIC_TRACK_LOST] = "track_lost",
-    [METRIC_ESTIMATES] = "estimates",
-    [METRIC_FRAMES_SENT] = "frames_sent",
-    [METRIC_FRAMES_SENT_BEACONS] = "frames_sent_beacons",
-    [METRIC_FRAMES_SENT_REPORTS] = "frames_sent_reports",
-    [METRIC_FRAMES_SENT_REQUESTS] = "frames_sent_requests",
-    [METRIC_FRAMES_RECEIVED] = "frames_received",
-    [METRIC_FRAMES_LOST] = "frames_lost",
-    [METRIC_READINGS] = "readings",
-    [METRIC_READINGS_REFUSED] = "readings_refused",
-    [METRIC_REPORTS] = "reports",
-    [METRIC_REPORTS_ASKED] = "reports_asked",
-    [METRIC_REPORTS_NO_ROUTE] = "reports_no_route",
-    [METRIC_MEASUREMENTS] = "measurements",
-    [METRIC_MEASUREMENTS_LATE] = "measurements_late",
-    [METRIC_MEASUREMENTS_OVERFLOWED] = "measurements_overflowed",
-};
+#define NAME(id, name, meaning) name,
+#define NAME_OF_TOTAL(id, name, value, meaning) name,
+const char *const metric_names[METRIC_COUNT] = {METRICS_OF_ERRORS(NAME) METRICS_OF_TRACK(NAME) TOTALS(NAME_OF_TOTAL)};
+
+#define MEANING(id, name, meaning) meaning,
+#define MEANING_OF_TOTAL(id, name, value, meaning) meaning,
+const char *const metric_meanings[METRIC_COUNT] = {METRICS_OF_ERRORS(MEANING) METRICS_OF_TRACK(MEANING)
+                                                       TOTALS(MEANING_OF_TOTAL)};
 
 static double error_of(const motehound_track_t *track)
 {
@@ -123,25 +107,10 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
             counted_s = track->time_s;
         }
     }
-    const motehound_run_end_t *end = &recorder->end;
     const bool truth = recorder->samples > 0;
     metrics_of_errors(errors, values);
     values[METRIC_TRACKED_SHARE] = truth ? (double)tracked / (double)recorder->samples : (double)NAN;
     values[METRIC_TRACK_LOST] = truth ? lost(recorder, scenario) : (double)NAN;
     values[METRIC_ESTIMATES] = (double)recorder->track_count;
-    values[METRIC_FRAMES_SENT] =
-        (double)(end->frames_sent_beacons + end->frames_sent_reports + end->frames_sent_requests);
-    values[METRIC_FRAMES_SENT_BEACONS] = (double)end->frames_sent_beacons;
-    values[METRIC_FRAMES_SENT_REPORTS] = (double)end->frames_sent_reports;
-    values[METRIC_FRAMES_SENT_REQUESTS] = (double)end->frames_sent_requests;
-    values[METRIC_FRAMES_RECEIVED] = (double)end->frames_received;
-    values[METRIC_FRAMES_LOST] = (double)end->frames_lost;
-    values[METRIC_READINGS] = (double)end->readings;
-    values[METRIC_READINGS_REFUSED] = (double)end->readings_refused;
-    values[METRIC_REPORTS] = (double)end->reports;
-    values[METRIC_REPORTS_ASKED] = (double)end->reports_asked;
-    values[METRIC_REPORTS_NO_ROUTE] = (double)end->reports_no_route;
-    values[METRIC_MEASUREMENTS] = (double)end->measurements;
-    values[METRIC_MEASUREMENTS_LATE] = (double)end->measurements_late;
-    values[METRIC_MEASUREMENTS_OVERFLOWED] = (double)end->measurements_overflowed;
+    memcpy(&values[METRIC_FIRST_TOTAL], recorder->totals, sizeof recorder->totals);
 }

@@ -16,38 +16,33 @@ struct errors {
     struct samples nees;     /* e' P^-1 e, where the tracker states a covariance */
 };
 
-/* Metrics in the order of runs.csv. NaN stands for one that does not apply. */
+/* Metrics in the order of runs.csv, the totals last: identifier, name with its unit, meaning. NaN stands for one that does not apply. */
+/* clang-format off */
+#define METRICS_OF_ERRORS(X) /* what struct errors alone gives */                                                           \
+    X(POSITION_RMSE_M, "position_rmse_m", "root mean square error of the position")                                         \
+    X(POSITION_MEDIAN_M, "position_median_m", "median error of the position")                                               \
+    X(POSITION_P95_M, "position_p95_m", "95th percentile of the error")                                                     \
+    X(RAW_POSITION_RMSE_M, "raw_position_rmse_m", "root mean square error before the filter")                               \
+    X(POSITION_RMSE_AT_ARRIVAL_M, "position_rmse_at_arrival_m", "error against the position at the estimated time of arrival") \
+    X(NEES_MEDIAN, "nees_median", "median normalised squared error (1.39 is exact)")
+
+#define METRICS_OF_TRACK(X)                                                                                                 \
+    X(TRACKED_SHARE, "tracked_share", "share of the sampling instants with the source present that gave a position")        \
+    X(TRACK_LOST, "track_lost", "1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates, else 0") \
+    X(ESTIMATES, "estimates", "positions that the head reported")
+/* clang-format on */
+
+#define METRIC_ENUMERATOR(id, name, meaning) METRIC_##id,
+#define METRIC_ENUMERATOR_OF_TOTAL(id, name, value, meaning) METRIC_##id,
 enum metric {
-    METRIC_POSITION_RMSE_M,
-    METRIC_POSITION_MEDIAN_M,
-    METRIC_POSITION_P95_M,
-    METRIC_RAW_POSITION_RMSE_M,
-    METRIC_POSITION_RMSE_AT_ARRIVAL_M,
-    METRIC_NEES_MEDIAN, /* the last that struct errors alone gives */
-    METRIC_TRACKED_SHARE,
-    METRIC_TRACK_LOST,
-    METRIC_ESTIMATES,
-    METRIC_FRAMES_SENT,
-    METRIC_FRAMES_SENT_BEACONS,
-    METRIC_FRAMES_SENT_REPORTS,
-    METRIC_FRAMES_SENT_REQUESTS,
-    METRIC_FRAMES_RECEIVED,
-    METRIC_FRAMES_LOST,
-    METRIC_READINGS,
-    METRIC_READINGS_REFUSED,
-    METRIC_REPORTS,
-    METRIC_REPORTS_ASKED,
-    METRIC_REPORTS_NO_ROUTE,
-    METRIC_MEASUREMENTS,
-    METRIC_MEASUREMENTS_LATE,
-    METRIC_MEASUREMENTS_OVERFLOWED,
-    METRIC_COUNT
+    METRICS_OF_ERRORS(METRIC_ENUMERATOR) METRICS_OF_TRACK(METRIC_ENUMERATOR) TOTALS(METRIC_ENUMERATOR_OF_TOTAL)
+        METRIC_COUNT
 };
 
-enum { METRIC_ERRORS_COUNT = METRIC_NEES_MEDIAN + 1 };
+enum { METRIC_ERRORS_COUNT = METRIC_NEES_MEDIAN + 1, METRIC_FIRST_TOTAL = METRIC_COUNT - TOTAL_COUNT };
 
-/* position_rmse_m, ..., with the unit in the name where there is one. */
 extern const char *const metric_names[METRIC_COUNT];
+extern const char *const metric_meanings[METRIC_COUNT];
 
 /* The errors of a run; `errors` begins as all zero bytes. Returns 0, or -1 if there is no memory. */
 int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors);
@@ -60,9 +55,7 @@ void errors_free(struct errors *errors);
 /* The first METRIC_ERRORS_COUNT metrics, from the errors alone. Puts the errors in ascending order. */
 void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT]);
 
-/* All metrics of a run. tracked_share: share of the sampling instants with the source present that gave a position.
- * track_lost: 1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates of a target, else 0.
- * Takes the run's errors as errors_of gave them, and puts them in ascending order. */
+/* All metrics of a run. Takes the run's errors as errors_of gave them, and puts them in ascending order. */
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT]);
 

@@ -2,9 +2,12 @@
 
 #include "bus/bus.h"
 
+#include "motehound_totals_t.h"
 #include "motehound_truth_t.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Room for one more element of `size` bytes. Returns false if there is no memory. */
 static bool grow(void **array, size_t count, size_t *capacity, size_t size)
@@ -59,13 +62,24 @@ static void on_truth(const lcm_recv_buf_t *buffer, const char *channel, void *co
     recorder->samples += truth.present ? 1 : 0;
 }
 
-static void on_run_end(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+static void on_totals(const lcm_recv_buf_t *buffer, const char *channel, void *context)
 {
     (void)channel;
     struct recorder *recorder = context;
-    if (motehound_run_end_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->end) < 0) {
+    motehound_totals_t message;
+    if (motehound_totals_t_decode(buffer->data, 0, (int)buffer->data_size, &message) < 0) {
         recorder->failed = true;
+        return;
     }
+    for (int total = 0; total < TOTAL_COUNT; total++) {
+        recorder->totals[total] = (double)NAN;
+        for (int32_t i = 0; i < message.count; i++) {
+            if (strcmp(message.names[i], total_names[total]) == 0) {
+                recorder->totals[total] = message.values[i];
+            }
+        }
+    }
+    motehound_totals_t_decode_cleanup(&message);
 }
 
 int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
@@ -73,7 +87,7 @@ int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
     const bool sound = lcm_subscribe(lcm, BUS_NODE, on_node, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRACK, on_track, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRUTH, on_truth, recorder) != NULL &&
-                       lcm_subscribe(lcm, BUS_RUN_END, on_run_end, recorder) != NULL;
+                       lcm_subscribe(lcm, BUS_TOTALS, on_totals, recorder) != NULL;
     return sound ? 0 : -1;
 }
 

@@ -3,8 +3,8 @@
 #define MOTEHOUND_SIM_RECORDER_H
 
 #include "motehound_node_t.h"
-#include "motehound_run_end_t.h"
 #include "motehound_track_t.h"
+#include "totals.h"
 
 #include <lcm/lcm.h>
 #include <stdbool.h>
@@ -14,9 +14,9 @@ struct recorder {
     size_t track_count, track_capacity;
     motehound_node_t *nodes; /* the motes, where the bus tells them */
     size_t node_count, node_capacity;
-    size_t samples;          /* sampling instants at which the source was present */
-    motehound_run_end_t end; /* the run's totals, all zero until it has ended */
-    bool failed;             /* no memory, or a message that is none of ours */
+    size_t samples;             /* sampling instants at which the source was present */
+    double totals[TOTAL_COUNT]; /* of the run, all zero until it has ended */
+    bool failed;                /* no memory, or a message that is none of ours */
 };
 
 /* `recorder` begins as all zero bytes and stays where it is while `lcm` is alive. Returns 0, or -1 if LCM refuses. */

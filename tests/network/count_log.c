@@ -5,8 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CHANNELS = 6 };
-static const char *const channels[CHANNELS] = {BUS_RUN_BEGIN, BUS_NODE, BUS_TRUTH, BUS_FRAME, BUS_TRACK, BUS_RUN_END};
+enum { CHANNELS = 8 };
+static const char *const channels[CHANNELS] = {BUS_RUN_BEGIN, BUS_NODE, BUS_TRUTH,  BUS_FRAME,
+                                               BUS_TRACK,     BUS_MOTE, BUS_TOTALS, BUS_RUN_END};
 
 static void count(const char *channel, long counts[CHANNELS + 1])
 {

@@ -7,6 +7,8 @@ accepted "$MOTEHOUND" list
 grep -q luo_exp4 out.txt || complain "list: no luo_exp4"
 accepted "$MOTEHOUND" list --keys
 grep -q '^source.speed_mps .*a number 0.01 to 100' out.txt || complain "list --keys: no source.speed_mps"
+accepted "$MOTEHOUND" list --metrics
+grep -q '^energy_mj_routing ' out.txt || complain "list --metrics: no energy_mj_routing"
 accepted "$MOTEHOUND" --version
 accepted "$MOTEHOUND" --help
 for command in list run replay; do accepted "$MOTEHOUND" $command --help; done

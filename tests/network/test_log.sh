@@ -10,7 +10,7 @@ accepted "${run[@]}" --log --out logged
 diff played.txt read.txt || complain "the file provider and the event log disagree"
 of() { awk -v channel="MOTEHOUND_$1" '$1 == channel {print $2}' "$2"; }
 column() { awk -F, -v name="$1" 'NR == 1 {for (i = 1; i <= NF; i++) if ($i == name) c = i} NR == 2 {print $c}' logged/runs.csv; }
-[ "$(of RUN_BEGIN read.txt)" = 1 ] && [ "$(of RUN_END read.txt)" = 1 ] || complain "begin and end: $(cat read.txt)"
+[ "$(of RUN_BEGIN read.txt)" = 1 ] && [ "$(of RUN_END read.txt)" = 1 ] && [ "$(of TOTALS read.txt)" = 1 ] || complain "begin and end: $(cat read.txt)"
 [ "$(of TRACK read.txt)" = "$(($(wc -l <logged/track.csv) - 1))" ] || complain "tracks: $(cat read.txt)"
 [ "$(of NODE read.txt)" = "$(($(wc -l <logged/nodes.csv) - 1))" ] || complain "nodes: $(cat read.txt)"
 [ "$(of FRAME read.txt)" = "$(column frames_sent)" ] || complain "frames: $(cat read.txt), $(column frames_sent) in runs.csv"

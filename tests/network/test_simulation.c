@@ -113,7 +113,8 @@ static void hear_frame(void *context, double time_s, mh_node_id sender, mh_node_
     }
 }
 
-static const struct observer all = {NULL, hear_node, hear_truth, hear_estimate, hear_frame};
+static const struct observer all = {
+    .node = hear_node, .truth = hear_truth, .estimate = hear_estimate, .frame = hear_frame};
 
 static void run(const struct scenario *scenario, uint64_t seed)
 {

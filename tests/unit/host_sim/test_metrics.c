@@ -4,6 +4,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Unity is built without double. */
@@ -73,7 +74,16 @@ static void run_of(int instants, void (*run)(const struct observer *observer, in
 {
     struct bus bus;
     struct simulation_counters counters = {
-        .frames_sent = {1, 20, 300}, .frames_received = 7, .motes = {.reports_asked = 9}};
+        .frames_sent = {1, 20, 300},
+        .frames_received = 7,
+        .motes = {.reports = 20, .reports_asked = 9},
+        .head = {.measurements = 13, .late = 2},
+        .energy = {.joules = {[ENERGY_LISTEN] = {[ENERGY_IDLE] = 3, [ENERGY_ROUTING] = 0.5},
+                              [ENERGY_TRANSMIT] = {[ENERGY_ROUTING] = 0.25, [ENERGY_TIME] = 0.125}},
+                   .lifetime_s = (double)NAN,
+                   .lifetime_half_s = 77,
+                   .dead = 4},
+        .clock_error_p99_ms = 0.75};
     TEST_ASSERT_EQUAL_INT(0, bus_open(&bus, 0, NULL, NULL, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, recorder_subscribe(&recorder, bus.lcm));
     const struct observer observer = bus_observer(&bus);
@@ -113,6 +123,57 @@ static void errors_leave_out_the_first_and_the_time_without_a_source(void)
     NEAR(300, values[METRIC_FRAMES_SENT_REQUESTS]);
     NEAR(7, values[METRIC_FRAMES_RECEIVED]);
     NEAR(9, values[METRIC_REPORTS_ASKED]);
+    NEAR(0.75, values[METRIC_DELIVERY_SHARE]);
+    NEAR(3875, values[METRIC_ENERGY_MJ]);
+    NEAR(750, values[METRIC_ENERGY_MJ_ROUTING]);
+    NEAR(125, values[METRIC_ENERGY_MJ_TIME]);
+    NEAR(3000, values[METRIC_ENERGY_MJ_IDLE]);
+    NEAR(3500, values[METRIC_ENERGY_MJ_STATE_LISTEN]);
+    NEAR(375, values[METRIC_ENERGY_MJ_STATE_TRANSMIT]);
+    NEAR(0, values[METRIC_ENERGY_MJ_STATE_CPU]);
+    NEAR(77, values[METRIC_LIFETIME_HALF_S]);
+    NEAR(4, values[METRIC_MOTES_DEAD]);
+    NEAR(0.75, values[METRIC_CLOCK_ERROR_P99_MS]);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_LIFETIME_S]));
+}
+
+static void metrics_have_names_of_their_own(void)
+{
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        TEST_ASSERT_TRUE(strlen(metric_meanings[i]) > 0);
+        for (size_t j = 0; j < i; j++) {
+            TEST_ASSERT_TRUE_MESSAGE(strcmp(metric_names[i], metric_names[j]) != 0, metric_names[i]);
+        }
+    }
+    TEST_ASSERT_EQUAL_STRING("nees_median", metric_names[METRIC_ERRORS_COUNT - 1]);
+    TEST_ASSERT_EQUAL_STRING(total_names[0], metric_names[METRIC_FIRST_TOTAL]);
+}
+
+/* The name of every state and cause stands in a metric's. */
+static void energy_metrics_cover_states_and_causes(void)
+{
+    struct simulation_counters counters = {0};
+    double totals[TOTAL_COUNT];
+    for (int state = 0; state < ENERGY_STATES; state++) {
+        for (int cause = 0; cause < ENERGY_CAUSES; cause++) {
+            char of_state[60], of_cause[60];
+            snprintf(of_state, sizeof of_state, "energy_mj_state_%s", energy_state_names[state]);
+            snprintf(of_cause, sizeof of_cause, "energy_mj_%s", energy_cause_names[cause]);
+            counters.energy.joules[state][cause] = 2;
+            totals_of(&counters, totals);
+            int found = 0;
+            for (int i = 0; i < TOTAL_COUNT; i++) {
+                const bool meant = strcmp(total_names[i], of_state) == 0 || strcmp(total_names[i], of_cause) == 0 ||
+                                   strcmp(total_names[i], "energy_mj") == 0;
+                found += meant;
+                if (strncmp(total_names[i], "energy_mj", 9) == 0) {
+                    NEAR(meant ? 2000 : 0, totals[i]);
+                }
+            }
+            TEST_ASSERT_EQUAL_INT(3, found);
+            counters.energy.joules[state][cause] = 0;
+        }
+    }
 }
 
 /* Every other instant without a position; no covariance. */
@@ -187,6 +248,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(statistics_have_their_closed_forms);
     RUN_TEST(errors_leave_out_the_first_and_the_time_without_a_source);
+    RUN_TEST(metrics_have_names_of_their_own);
+    RUN_TEST(energy_metrics_cover_states_and_causes);
     RUN_TEST(what_a_tracker_does_not_state_does_not_apply);
     RUN_TEST(without_truth_there_are_no_errors);
     RUN_TEST(a_track_is_lost_after_so_many_successive_errors_of_one_target);

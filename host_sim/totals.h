@@ -1,0 +1,57 @@
+/* The totals of a run that have a name, in one table. A line here is all that one more takes: it then goes over the bus, into runs.csv
+ * and summary.json, and into `motehound list --metrics`. */
+#ifndef MOTEHOUND_SIM_TOTALS_H
+#define MOTEHOUND_SIM_TOTALS_H
+
+#include "simulation.h"
+
+/* Identifier, name with its unit, value from `c`, a const struct simulation_counters * (NaN for one that does not apply), meaning.
+ * What the values call is in totals.c. */
+/* clang-format off */
+#define TOTALS(X)                                                                                                                                  \
+    X(FRAMES_SENT, "frames_sent", frames_sent(c), "frames sent by all motes, every hop counted")                                                   \
+    X(FRAMES_SENT_BEACONS, "frames_sent_beacons", c->frames_sent[MH_MESSAGE_BEACON], "of these beacons, which build the way to the head")          \
+    X(FRAMES_SENT_REPORTS, "frames_sent_reports", c->frames_sent[MH_MESSAGE_REPORT], "of these reports of readings")                               \
+    X(FRAMES_SENT_REQUESTS, "frames_sent_requests", c->frames_sent[MH_MESSAGE_REQUEST], "of these requests of the head for readings")              \
+    X(FRAMES_SENT_HELLOS, "frames_sent_hellos", c->frames_sent[MH_MESSAGE_HELLO], "of these hellos to the neighbours")                             \
+    X(FRAMES_SENT_LANDMARKS, "frames_sent_landmarks", c->frames_sent[MH_MESSAGE_LANDMARK], "of these landmarks, which say where the head is")      \
+    X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
+    X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \
+    X(READINGS, "readings", c->motes.readings, "samples taken by all motes")                                                                       \
+    X(READINGS_REFUSED, "readings_refused", c->motes.readings_refused, "samples out of range or out of time")                                      \
+    X(REPORTS, "reports", c->motes.reports, "readings that a mote reported")                                                                       \
+    X(REPORTS_ASKED, "reports_asked", c->motes.reports_asked, "of these reported only because the head asked")                                     \
+    X(REPORTS_NO_ROUTE, "reports_no_route", c->motes.reports_no_route, "of these lost for want of a next hop")                                     \
+    X(MEASUREMENTS, "measurements", c->head.measurements, "reports that reached the head in time")                                                 \
+    X(MEASUREMENTS_LATE, "measurements_late", c->head.late, "reports that reached the head too late")                                              \
+    X(MEASUREMENTS_OVERFLOWED, "measurements_overflowed", c->head.overflowed, "reports that gave way to stronger ones for want of room")           \
+    X(DELIVERY_SHARE, "delivery_share", delivery_share(c), "share of the reports that reached the head, in time or late")                          \
+    X(CLOCK_ERROR_P99_MS, "clock_error_p99_ms", c->clock_error_p99_ms, "99th percentile of the error of the motes' network time")                  \
+    X(LIFETIME_S, "lifetime_s", c->energy.lifetime_s, "until the first battery was empty")                                                         \
+    X(LIFETIME_HALF_S, "lifetime_half_s", c->energy.lifetime_half_s, "until half of the batteries were empty")                                     \
+    X(MOTES_DEAD, "motes_dead", c->energy.dead, "motes whose battery is empty at the end")                                                         \
+    X(ENERGY_MJ, "energy_mj", energy_mj(c, ANY, ANY), "energy used by all motes but the one on mains")                                                     \
+    X(ENERGY_MJ_LOCALISATION, "energy_mj_localisation", energy_mj(c, ANY, ENERGY_LOCALISATION), "of this for sampling, computing and asking")      \
+    X(ENERGY_MJ_CLUSTERING, "energy_mj_clustering", energy_mj(c, ANY, ENERGY_CLUSTERING), "of this for clusters")                                  \
+    X(ENERGY_MJ_REPORTING, "energy_mj_reporting", energy_mj(c, ANY, ENERGY_REPORTING), "of this for carrying reports")                             \
+    X(ENERGY_MJ_ROUTING, "energy_mj_routing", energy_mj(c, ANY, ENERGY_ROUTING), "of this for finding ways and neighbours")                        \
+    X(ENERGY_MJ_TIME, "energy_mj_time", energy_mj(c, ANY, ENERGY_TIME), "of this for keeping clocks together")                                     \
+    X(ENERGY_MJ_IDLE, "energy_mj_idle", energy_mj(c, ANY, ENERGY_IDLE), "of this for nothing: waiting and sleeping")                               \
+    X(ENERGY_MJ_STATE_SENSING, "energy_mj_state_sensing", energy_mj(c, ENERGY_SENSING, ANY), "energy of the sensors")                              \
+    X(ENERGY_MJ_STATE_CPU, "energy_mj_state_cpu", energy_mj(c, ENERGY_CPU, ANY), "energy of the processors, idle ones included")                   \
+    X(ENERGY_MJ_STATE_TRANSMIT, "energy_mj_state_transmit", energy_mj(c, ENERGY_TRANSMIT, ANY), "energy of the radios while transmitting")         \
+    X(ENERGY_MJ_STATE_RECEIVE, "energy_mj_state_receive", energy_mj(c, ENERGY_RECEIVE, ANY), "energy of the radios while receiving")               \
+    X(ENERGY_MJ_STATE_LISTEN, "energy_mj_state_listen", energy_mj(c, ENERGY_LISTEN, ANY), "energy of the radios while listening")                  \
+    X(ENERGY_MJ_STATE_SLEEP, "energy_mj_state_sleep", energy_mj(c, ENERGY_SLEEP, ANY), "energy of the radios while sleeping")                      \
+    X(EVENTS, "events", c->events, "of the simulation")
+/* clang-format on */
+
+#define TOTAL_ENUMERATOR(id, name, value, meaning) TOTAL_##id,
+enum total { TOTALS(TOTAL_ENUMERATOR) TOTAL_COUNT };
+
+extern const char *const total_names[TOTAL_COUNT];
+extern const char *const total_meanings[TOTAL_COUNT];
+
+void totals_of(const struct simulation_counters *counters, double values[TOTAL_COUNT]);
+
+#endif
