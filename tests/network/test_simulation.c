@@ -193,7 +193,7 @@ static void what_is_told_agrees_with_what_is_counted(void)
     uint64_t sent = 0;
     for (int kind = 0; kind < MH_MESSAGE_KINDS; kind++) {
         TEST_ASSERT_TRUE(told.frames[kind] == counters.frames_sent[kind]);
-        TEST_ASSERT_TRUE(told.frames[kind] > 0);
+        TEST_ASSERT_TRUE(told.frames[kind] > 0 || kind > MH_MESSAGE_REQUEST); /* what collection sends */
         sent += told.frames[kind];
     }
     TEST_ASSERT_TRUE(sent == counters.motes.frames_sent);
