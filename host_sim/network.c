@@ -5,21 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What an event is: two bits of kind, thirty of index (a mote, a flight). */
-enum { EVENT_INSTANT, EVENT_ALARM, EVENT_FRAME };
-
-#define EVENT(kind, index) ((uint32_t)(kind) << 30 | (uint32_t)(index))
-#define NEVER UINT64_MAX
 #define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
 
-static mh_tick tick_of(sim_time time) { return (mh_tick)(time / MICROSECONDS_PER_TICK); }
-
-/* The simulated time at which a mote's clock shows `tick`, the one nearest to now. */
-static int64_t time_of(const struct network *network, mh_tick tick)
-{
-    const int64_t ahead = mh_ticks_between(tick_of(network->now), tick);
-    return ((int64_t)(network->now / MICROSECONDS_PER_TICK) + ahead) * MICROSECONDS_PER_TICK;
-}
+/* A frame that went on the air, to be told to the observer. */
+struct network_frame {
+    sim_time time;
+    uint32_t sender, destination;
+    const uint8_t *bytes;
+    size_t length;
+};
 
 static double seconds(const struct network *network, int64_t time)
 {
@@ -28,9 +22,62 @@ static double seconds(const struct network *network, int64_t time)
 
 double network_time_s(const struct network *network) { return seconds(network, (int64_t)network->now); }
 
-static void push(struct network *network, sim_time time, uint32_t event)
+/* The simulated time of a tick of the network's time, the one nearest to `now`. */
+static int64_t time_of(mh_tick tick, sim_time now)
 {
-    if (event_queue_push(&network->queue, time, event)) {
+    const int64_t ticks = (int64_t)(now / MICROSECONDS_PER_TICK);
+    return (ticks + mh_ticks_between((mh_tick)ticks, tick)) * MICROSECONDS_PER_TICK;
+}
+
+/* ---- what happens to the motes ---- */
+
+/* Room for one more element of a list; NULL if there is no memory. */
+static void *extend(struct network *network, void *list, size_t count, size_t *capacity, size_t size)
+{
+    if (count < *capacity) {
+        return list;
+    }
+    const size_t larger = *capacity ? 2 * *capacity : 64;
+    void *moved = realloc(list, larger * size);
+    if (moved) {
+        *capacity = larger;
+    } else {
+        network->out_of_memory = true;
+    }
+    return moved;
+}
+
+static void happen(struct network *network, const struct host_event *event)
+{
+    struct host_event *events =
+        extend(network, network->events, network->event_count, &network->event_capacity, sizeof *events);
+    if (events) {
+        network->events = events;
+        events[network->event_count++] = *event;
+    }
+}
+
+static const void *keep(struct network *network, const void *bytes, size_t size)
+{
+    void *kept = arena_take(&network->arena, size);
+    if (!kept) {
+        network->out_of_memory = true;
+        return NULL;
+    }
+    return memcpy(kept, bytes, size);
+}
+
+void network_reading(struct network *network, uint32_t mote, int32_t counts, uint8_t target)
+{
+    const struct host_event event = {network->now, HOST_READING, mote, {.reading = {counts, target}}};
+    happen(network, &event);
+}
+
+void network_power(struct network *network, uint32_t mote, bool on)
+{
+    const struct host_event event = {.time = network->now, .kind = on ? HOST_START : HOST_STOP, .mote = mote};
+    happen(network, &event);
+    if (radio_power(&network->radio, network->now, mote, on ? RADIO_POWER_ON : RADIO_POWER_OFF)) {
         network->out_of_memory = true;
     }
 }
@@ -44,98 +91,179 @@ static void count_kind(struct network *network, const uint8_t *frame)
     }
 }
 
-static void transmit(void *context, uint32_t mote, mh_node_id destination, const uint8_t *frame, size_t length)
+static void on_air(void *context, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *bytes,
+                   size_t length)
 {
     struct network *network = context;
-    const struct deployment *deployment = network->config.deployment;
-    const struct observer *observer = network->config.observer;
-    /* An identifier that no node has is the sink's: deployment_find gives the index after the last node's. */
-    const uint32_t to = destination == MH_BROADCAST ? RADIO_ALL : (uint32_t)deployment_find(deployment, destination);
-    uint32_t flight;
-    sim_time takes;
-    if (radio_send(&network->radio, mote, to, frame, length, &flight, &takes)) {
-        network->out_of_memory = true;
+    count_kind(network, bytes);
+    if (!network->config.observer->frame) {
         return;
     }
-    push(network, network->now + takes, EVENT(EVENT_FRAME, flight));
-    count_kind(network, frame);
-    if (observer->frame) {
-        const mh_node_id sender = mote < deployment->count ? deployment->nodes[mote].id : network->sink_id;
-        observer->frame(observer->context, network_time_s(network), sender, destination, frame, length);
-    }
-}
-
-/* The queue remembers the earliest time that was ever asked for; when it comes and the mote has meanwhile asked for a later one, that is
- * remembered next. So a mote that puts its alarm off again and again does not fill the queue. */
-static void set_alarm(void *context, uint32_t mote, mh_tick tick)
-{
-    struct network *network = context;
-    struct network_alarm *alarm = &network->alarms[mote];
-    const int64_t time = time_of(network, tick);
-    alarm->wanted = time < (int64_t)network->now ? network->now : (sim_time)time;
-    if (alarm->wanted < alarm->queued) {
-        alarm->queued = alarm->wanted;
-        push(network, alarm->queued, EVENT(EVENT_ALARM, mote));
-    }
-}
-
-static void alarm_comes(struct network *network, uint32_t mote)
-{
-    struct network_alarm *alarm = &network->alarms[mote];
-    if (alarm->queued != network->now) {
-        return; /* an earlier event has taken its place */
-    }
-    alarm->queued = NEVER;
-    if (alarm->wanted > network->now) {
-        if (alarm->wanted != NEVER) {
-            alarm->queued = alarm->wanted;
-            push(network, alarm->queued, EVENT(EVENT_ALARM, mote));
+    struct network_frame *frames =
+        extend(network, network->frames, network->frame_count, &network->frame_capacity, sizeof *frames);
+    const uint8_t *kept = keep(network, bytes, length);
+    if (frames) {
+        network->frames = frames;
+        if (kept) {
+            frames[network->frame_count++] = (struct network_frame){time, sender, destination, kept, length};
         }
-        return;
     }
-    alarm->wanted = NEVER;
-    network->host.alarm(network->host.state, mote, tick_of(network->now));
 }
 
-static void report(void *context, uint32_t mote, const struct mh_estimate *estimate)
-{
-    (void)mote;
-    struct network *network = context;
-    network->config.report(network->config.context, network_time_s(network),
-                           seconds(network, time_of(network, estimate->time)), estimate);
-}
-
-static const struct host_port port = {transmit, set_alarm, report};
-
-static void receive(void *context, uint32_t receiver, const uint8_t *bytes, size_t length)
+static void heard(void *context, sim_time time, const uint8_t *bytes, size_t length, const uint32_t *receivers,
+                  uint32_t count)
 {
     struct network *network = context;
-    network->host.frame(network->host.state, receiver, tick_of(network->now), bytes, length);
+    const uint8_t *kept_bytes = keep(network, bytes, length);
+    const uint32_t *kept_receivers = keep(network, receivers, count * sizeof *receivers);
+    if (kept_bytes && kept_receivers) {
+        const struct host_event event = {
+            .time = time, .kind = HOST_FRAME, .as.frame = {kept_bytes, kept_receivers, count, (uint8_t)length}};
+        happen(network, &event);
+    }
 }
 
-struct mh_place place_from_metres(double x_m, double y_m, double z_m)
+static void sent(void *context, sim_time time, uint32_t sender, enum mh_sent outcome)
 {
-    return (struct mh_place){(int32_t)lround(x_m * 1000), (int32_t)lround(y_m * 1000), (int32_t)lround(z_m * 1000)};
+    const struct host_event event = {time, HOST_SENT, sender, {.sent = outcome}};
+    happen(context, &event);
 }
+
+/* ---- what the motes did ---- */
+
+static void transmit(struct network *network, const struct host_action *action)
+{
+    const mh_node_id destination = action->as.transmit.destination;
+    const uint32_t to = destination == MH_BROADCAST ? RADIO_ALL : roster_find(network->config.roster, destination);
+    if (radio_send(&network->radio, action->time + network->lookahead, action->mote, to, action->as.transmit.bytes,
+                   action->as.transmit.length, 0)) {
+        network->out_of_memory = true;
+    }
+}
+
+static void act(struct network *network, const struct host_action *action)
+{
+    const struct network_config *config = &network->config;
+    switch (action->kind) {
+    case HOST_TRANSMIT:
+        transmit(network, action);
+        break;
+    case HOST_REPORT:
+        config->report(config->context, seconds(network, (int64_t)action->time),
+                       seconds(network, time_of(action->as.estimate.time, action->time)), &action->as.estimate);
+        break;
+    case HOST_SLEEP:
+        if (radio_power(&network->radio, action->time + network->lookahead, action->mote,
+                        action->as.may_sleep ? RADIO_POWER_ASLEEP : RADIO_POWER_ON)) {
+            network->out_of_memory = true;
+        }
+        break;
+    case HOST_CLOCK:
+        break;
+    }
+}
+
+static void tell_frame(const struct network *network, const struct network_frame *frame)
+{
+    const struct observer *observer = network->config.observer;
+    const struct roster *roster = network->config.roster;
+    const mh_node_id destination =
+        frame->destination == RADIO_ALL ? MH_BROADCAST : roster_id(roster, frame->destination);
+    observer->frame(observer->context, seconds(network, (int64_t)frame->time), roster_id(roster, frame->sender),
+                    destination, frame->bytes, frame->length);
+}
+
+/* Frames and actions of the window, in order of time. */
+static void conclude(struct network *network)
+{
+    size_t told = 0;
+    for (size_t i = 0; i < network->actions.count; i++) {
+        const struct host_action *action = &network->actions.list[i];
+        while (told < network->frame_count && network->frames[told].time <= action->time) {
+            tell_frame(network, &network->frames[told++]);
+        }
+        act(network, action);
+    }
+    while (told < network->frame_count) {
+        tell_frame(network, &network->frames[told++]);
+    }
+    network->event_count = network->frame_count = network->actions.count = 0;
+    arena_reset(&network->arena);
+}
+
+/* ---- windows ---- */
+
+static sim_time earlier(sim_time a, sim_time b) { return a < b ? a : b; }
+
+static sim_time begin_of_window(const struct network *network)
+{
+    const sim_time first = network->event_count > 0 ? network->events[0].time : SIM_TIME_NEVER;
+    const sim_time world = earlier(event_queue_next(&network->instants), radio_next(&network->radio));
+    return earlier(earlier(first, world), network->host.next(network->host.state));
+}
+
+static int window(struct network *network, sim_time end, char *error, size_t error_size)
+{
+    const struct radio_sink sink = {.context = network, .on_air = on_air, .heard = heard, .sent = sent};
+    struct host *host = &network->host;
+    struct event event;
+    network->windows++;
+    while (event_queue_next(&network->instants) == network->now && event_queue_pop(&network->instants, &event)) {
+        network->out_of_memory |= network->config.instant(network->config.context) != 0;
+    }
+    const sim_time until =
+        earlier(earlier(network->now + network->lookahead, event_queue_next(&network->instants)), end);
+    network->out_of_memory |= radio_run(&network->radio, until, &sink) != 0;
+    if (!network->out_of_memory && (network->event_count > 0 || host->next(host->state) < until)) {
+        if (host->run(host->state, until, network->events, network->event_count, &network->actions, error,
+                      error_size)) {
+            return -1;
+        }
+        network->out_of_memory |= host_actions_sort(&network->actions) != 0;
+    }
+    conclude(network);
+    if (network->out_of_memory) {
+        snprintf(error, error_size, "out of memory at %.3f s", network_time_s(network));
+        return -1;
+    }
+    return 0;
+}
+
+int network_run(struct network *network, sim_time end, const volatile sig_atomic_t *stop, char *error,
+                size_t error_size)
+{
+    while ((network->now = begin_of_window(network)) < end) {
+        if (window(network, end, error, error_size)) {
+            return -1;
+        }
+        if (stop && __atomic_load_n(stop, __ATOMIC_RELAXED)) {
+            snprintf(error, error_size, "stopped at %.3f s", network_time_s(network));
+            return -1;
+        }
+    }
+    return 0;
+}
+
+/* ---- from the beginning to the end ---- */
 
 static int make_radio(struct network *network)
 {
     const struct scenario *scenario = network->config.scenario;
-    const struct deployment *deployment = network->config.deployment;
-    double *x_m = malloc(2 * sizeof *x_m * network->count);
+    const struct roster *roster = network->config.roster;
+    const size_t nodes = roster->deployment.count;
+    double *x_m = malloc(2 * sizeof *x_m * roster->count);
     if (!x_m) {
         return -1;
     }
-    double *y_m = x_m + network->count;
-    for (size_t i = 0; i < deployment->count; i++) {
-        x_m[i] = deployment->nodes[i].x_m;
-        y_m[i] = deployment->nodes[i].y_m;
+    double *y_m = x_m + roster->count;
+    for (size_t i = 0; i < nodes; i++) {
+        x_m[i] = roster->deployment.nodes[i].x_m;
+        y_m[i] = roster->deployment.nodes[i].y_m;
     }
-    x_m[deployment->count] = scenario->network.sink_x_m;
-    y_m[deployment->count] = scenario->network.sink_y_m;
-    const struct radio_config config = {network->config.range_m, scenario->radio.delay_s, scenario->radio.bitrate_bps,
-                                        scenario->radio.loss};
-    const int result = radio_make(&network->radio, &config, x_m, y_m, network->count, network->config.seed);
+    x_m[nodes] = roster->sink_x_m;
+    y_m[nodes] = roster->sink_y_m;
+    const struct radio_config config = {network->config.range_m, scenario->radio.bitrate_bps, scenario->radio.loss};
+    const int result = radio_make(&network->radio, &config, x_m, y_m, roster->count, network->config.seed);
     free(x_m);
     return result;
 }
@@ -152,67 +280,34 @@ static void learn_fingerprints(struct network *network)
     }
 }
 
-static enum mh_status bring_up(struct network *network)
+static int bring_up(struct network *network)
 {
-    const struct network_config *config = &network->config;
-    struct host_mote what = {.protocol = config->protocol.protocol,
-                             .protocol_config = &network->config.protocol.config};
-    for (uint32_t i = 0; i < network->count; i++) {
-        const bool is_sink = i == config->deployment->count;
-        const struct recorded_node *node = &config->deployment->nodes[i];
-        what.id = is_sink ? network->sink_id : node->id;
-        what.place = is_sink
-                         ? place_from_metres(config->scenario->network.sink_x_m, config->scenario->network.sink_y_m, 0)
-                         : place_from_metres(node->x_m, node->y_m, node->z_m);
-        what.sensor = is_sink ? NULL : &network->config.sensor;
-        what.head = is_sink ? &network->head : NULL;
-        const enum mh_status status = network->host.init(network->host.state, i, &what, 0);
-        if (status != MH_OK) {
-            return status;
+    const struct roster *roster = network->config.roster;
+    const struct observer *observer = network->config.observer;
+    for (uint32_t i = 0; i < roster->count; i++) {
+        const struct host_mote what = roster_mote(roster, i);
+        const struct host_event start = {.kind = HOST_START, .mote = i};
+        if (network->host.add(network->host.state, i, &what)) {
+            return -1;
         }
-        if (config->observer->node) {
-            config->observer->node(config->observer->context, what.id, &what.place);
+        happen(network, &start);
+        if (observer->node) {
+            observer->node(observer->context, what.id, &what.place);
         }
     }
-    return MH_OK;
+    return network->out_of_memory ? -1 : 0;
 }
 
 int network_make(struct network *network, const struct network_config *config, char *error, size_t error_size)
 {
-    const struct scenario *scenario = config->scenario;
-    const size_t nodes = config->deployment->count;
-    *network = (struct network){.config = *config, .count = (uint32_t)nodes + 1};
-    if (nodes < 1 || nodes >= UINT32_C(1) << 30 || config->deployment->nodes[nodes - 1].id >= MH_BROADCAST - 1) {
-        snprintf(error, error_size, "%zu nodes, expected 1 to 1,073,741,823 with identifiers below 4294967294", nodes);
-        return -1;
-    }
-    network->sink_id = config->deployment->nodes[nodes - 1].id + 1;
-    const mh_tick interval = config->sensor.interval;
-    const double window_s = scenario->tracker.window_s;
-    network->head = (struct mh_head_config){
-        .tracker = config->tracker.tracker,
-        .tracker_config = &network->config.tracker.config,
-        .epoch = config->epoch,
-        .interval = interval,
-        .window = window_s > 0 ? (mh_tick)lround(window_s * MH_TICKS_PER_S) : interval / 2,
-    };
+    const struct roster *roster = config->roster;
+    const double lookahead_us = round(config->scenario->radio.delay_s * SIM_TIME_PER_S);
+    *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
     learn_fingerprints(network);
-    network->alarms = malloc(network->count * sizeof *network->alarms);
-    if (!network->alarms || make_radio(network) ||
-        host_in_process(&network->host, network->count, network->radio.position, config->protocol.protocol, &port,
-                        network)) {
-        snprintf(error, error_size, "out of memory for %zu nodes", nodes);
-        network_free(network);
-        return -1;
-    }
-    for (uint32_t i = 0; i < network->count; i++) {
-        network->alarms[i] = (struct network_alarm){NEVER, NEVER};
-    }
-    const enum mh_status status = bring_up(network);
-    if (status != MH_OK) {
-        snprintf(error, error_size,
-                 "a mote does not come up (status %d): tracker.*, sensor.* or radio.* has a value outside its range",
-                 status);
+    if (make_radio(network) ||
+        host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->protocol.protocol) ||
+        bring_up(network)) {
+        snprintf(error, error_size, "out of memory for %u nodes", (unsigned)roster->count);
         network_free(network);
         return -1;
     }
@@ -225,63 +320,31 @@ void network_free(struct network *network)
         network->host.destroy(network->host.state);
     }
     radio_free(&network->radio);
-    event_queue_free(&network->queue);
-    free(network->alarms);
+    event_queue_free(&network->instants);
+    host_actions_free(&network->actions);
+    arena_free(&network->arena);
+    free(network->events);
+    free(network->frames);
     *network = (struct network){0};
 }
 
-int network_schedule(struct network *network, sim_time time)
-{
-    return event_queue_push(&network->queue, time, EVENT(EVENT_INSTANT, 0));
-}
+int network_schedule(struct network *network, sim_time time) { return event_queue_push(&network->instants, time, 0); }
 
-void network_reading(struct network *network, uint32_t mote, int32_t counts, uint8_t target)
+int network_count(struct network *network, struct simulation_counters *counters, char *error, size_t error_size)
 {
-    const mh_tick now = tick_of(network->now);
-    const struct mh_reading reading = {.time = now, .counts = counts, .target = target};
-    network->host.reading(network->host.state, mote, now, &reading);
-}
-
-int network_run(struct network *network, sim_time end, const volatile sig_atomic_t *stop, char *error,
-                size_t error_size)
-{
-    struct event event;
-    while (event_queue_pop(&network->queue, &event) && event.time < end) {
-        network->now = event.time;
-        network->events++;
-        const uint32_t index = event.content & UINT32_C(0x3FFFFFFF);
-        switch (event.content >> 30) {
-        case EVENT_INSTANT:
-            if (network->config.instant(network->config.context)) {
-                network->out_of_memory = true;
-            }
-            break;
-        case EVENT_ALARM:
-            alarm_comes(network, index);
-            break;
-        case EVENT_FRAME:
-            radio_land(&network->radio, index, receive, network);
-            break;
-        }
-        if (stop && __atomic_load_n(stop, __ATOMIC_RELAXED)) {
-            snprintf(error, error_size, "stopped at %.3f s", network_time_s(network));
-            return -1;
-        }
-        if (network->out_of_memory) {
-            snprintf(error, error_size, "out of memory at %.3f s", network_time_s(network));
-            return -1;
-        }
+    struct host_totals totals = {0};
+    if (network->host.count(network->host.state, &totals, error, error_size)) {
+        return -1;
     }
-    return 0;
-}
-
-void network_count(const struct network *network, struct simulation_counters *counters)
-{
-    counters->events = network->events;
+    counters->events = totals.events;
     counters->energy = energy_total_unknown();
     counters->clock_error_p99_ms = (double)NAN;
+    counters->motes = totals.motes;
+    counters->head = totals.heads;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);
     counters->frames_received = network->radio.received;
-    counters->frames_lost = network->radio.lost;
-    network->host.count(network->host.state, &counters->motes, &counters->head);
+    for (int reason = 0; reason < LOSS_REASONS; reason++) {
+        counters->frames_lost += network->radio.lost[reason];
+    }
+    return 0;
 }

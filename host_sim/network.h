@@ -1,54 +1,55 @@
-/* A running network: motes, their radio and their alarms, in simulated time. What the motes sense is the caller's business. */
+/* A running network: motes and their radio in simulated time. What the motes sense is the caller's business.
+ *
+ * Time passes in windows. A mote's radio begins with a frame no sooner than the lookahead, radio.delay_s, after the mote's decision (the
+ * way from its software to the air), so nothing that a mote does can reach another mote within so short a time. Each window
+ * begins when something happens next and ends a lookahead later, or at a sampling instant: first the radio runs to its end,
+ * which gives what the motes hear; then the motes run, wherever they live; what they did is put in order and given to the
+ * radio and to the observer. */
 #ifndef MOTEHOUND_SIM_NETWORK_H
 #define MOTEHOUND_SIM_NETWORK_H
 
+#include "engine/arena.h"
 #include "engine/event_queue.h"
 #include "hosts/host.h"
 #include "radio/radio.h"
+#include "roster.h"
 #include "simulation.h"
-#include "trackers.h"
-#include "world/deployment.h"
 
 struct network_config {
     const struct scenario *scenario;
-    const struct deployment *deployment; /* the nodes with sensors: motes 0, 1, 2 ... */
-    struct mh_sensor_config sensor;
-    struct tracker_choice tracker;
-    struct protocol_choice protocol;
-    mh_tick epoch;  /* a sampling instant */
+    const struct roster *roster;
     double range_m; /* of the radio */
     uint64_t seed;
     const struct observer *observer;
     double start_s; /* what the observer takes simulated time 0 for */
     void *context;
-    /* An instant asked for with network_schedule has come. Returns 0, or -1 to end the run. */
+    /* An instant asked for with network_schedule has come. Returns 0, or -1 to end the run for want of memory. */
     int (*instant)(void *context);
     /* The head's estimate for the instant `time_s`. */
     void (*report)(void *context, double now_s, double time_s, const struct mh_estimate *estimate);
 };
 
-struct network_alarm {
-    sim_time wanted, queued; /* when the mote wants it, and when the queue will remember it; NEVER for not at all */
-};
-
 struct network {
     struct network_config config;
-    struct mh_head_config head;
-    struct event_queue queue;
+    sim_time lookahead;
+    struct event_queue instants;
     struct radio radio;
     struct host host;
-    struct network_alarm *alarms;
-    uint32_t count; /* of motes: the nodes, then the sink */
-    mh_node_id sink_id;
-    sim_time now;
-    uint64_t events, frames_sent[MH_MESSAGE_KINDS];
+    sim_time now; /* beginning of the window */
+    /* of the window: what happens to the motes, what they did, which frames went on the air */
+    struct host_event *events;
+    size_t event_count, event_capacity;
+    struct host_actions actions;
+    struct network_frame *frames;
+    size_t frame_count, frame_capacity;
+    struct arena arena; /* bytes and receivers of the window's frames */
+    uint64_t windows, frames_sent[MH_MESSAGE_KINDS];
     uint8_t fingerprints[MH_MESSAGE_KINDS][8]; /* how the frames of a kind begin */
     bool out_of_memory;
 };
 
-/* Bring up a mote for each node and one more, the sink at scenario->network.sink_*: without a sensor, with the head, its id the largest
- * node's plus one. `config` is copied; what it points to outlives the network. Returns 0, or -1 with one line in
- * `error` and nothing to free. */
+/* Make all of it and power up the motes at simulated time 0. `config` is copied; what it points to outlives the network. Returns 0,
+ * or -1 with one line in `error` and nothing to free. */
 int network_make(struct network *network, const struct network_config *config, char *error, size_t error_size);
 
 void network_free(struct network *network);
@@ -59,17 +60,18 @@ double network_time_s(const struct network *network);
 /* Have config.instant called at `time`. Returns 0, or -1 if there is no memory. */
 int network_schedule(struct network *network, sim_time time);
 
-/* Mote `mote` has a reading, now. Readings that it refuses it counts. */
+/* For config.instant: mote `mote` has a reading, now. Readings that it refuses it counts. */
 void network_reading(struct network *network, uint32_t mote, int32_t counts, uint8_t target);
 
-/* Let everything happen that happens before `end`. Returns 0, or -1 with one line in `error`: stopped, or out of memory. */
+/* For config.instant: power mote `mote` up, with cleared memory, or down, now. */
+void network_power(struct network *network, uint32_t mote, bool on);
+
+/* Let everything happen that happens before `end`. Returns 0, or -1 with one line in `error`: stopped, a mote that does not come
+ * up, out of memory. */
 int network_run(struct network *network, sim_time end, const volatile sig_atomic_t *stop, char *error,
                 size_t error_size);
 
-/* Totals so far; `samples` is left alone. */
-void network_count(const struct network *network, struct simulation_counters *counters);
-
-/* Metres to a mote's millimetres. */
-struct mh_place place_from_metres(double x_m, double y_m, double z_m);
+/* Totals so far; `samples` is left alone. Returns 0, or -1 with one line in `error`. */
+int network_count(struct network *network, struct simulation_counters *counters, char *error, size_t error_size);
 
 #endif

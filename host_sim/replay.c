@@ -9,7 +9,7 @@
 struct replay {
     const struct recording *recording;
     const struct observer *observer;
-    struct deployment deployment;
+    struct roster roster;
     uint32_t *motes; /* of the recording's nodes */
     mh_tick interval;
     uint64_t lead;    /* ticks from simulated time 0 to the first reading, in which the nodes hear of the head */
@@ -127,7 +127,7 @@ static int work(void *context)
 static int find_motes(struct replay *replay, char *error, size_t error_size)
 {
     const struct recording *recording = replay->recording;
-    if (deployment_copy(&replay->deployment, recording->nodes, recording->node_count, error, error_size)) {
+    if (deployment_copy(&replay->roster.deployment, recording->nodes, recording->node_count, error, error_size)) {
         return -1;
     }
     replay->motes = malloc(recording->node_count * sizeof *replay->motes + 1);
@@ -136,7 +136,7 @@ static int find_motes(struct replay *replay, char *error, size_t error_size)
         return -1;
     }
     for (size_t i = 0; i < recording->node_count; i++) {
-        replay->motes[i] = (uint32_t)deployment_find(&replay->deployment, recording->nodes[i].id);
+        replay->motes[i] = (uint32_t)deployment_find(&replay->roster.deployment, recording->nodes[i].id);
     }
     return 0;
 }
@@ -168,15 +168,10 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
         return -1;
     }
     replay->instant = phase;
-    struct network_config config = {
+    struct roster *roster = &replay->roster;
+    const struct network_config config = {
         .scenario = scenario,
-        .deployment = &replay->deployment,
-        .sensor = {.q20_per_count = 1,
-                   .counts_min = INT32_MIN,
-                   .counts_max = INT32_MAX,
-                   .interval = replay->interval,
-                   .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi)},
-        .epoch = (mh_tick)(replay->lead + phase),
+        .roster = roster,
         .range_m = HUGE_VAL,
         .seed = seed,
         .observer = replay->observer,
@@ -185,12 +180,20 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
         .instant = work,
         .report = report,
     };
-    if (tracker_choose(scenario, NULL, &config.tracker, error, error_size) ||
-        protocol_choose("direct", scenario, &config.protocol, error, error_size) ||
+    if (tracker_choose(scenario, NULL, &roster->tracker, error, error_size) ||
+        protocol_choose("direct", scenario, &roster->protocol, error, error_size) ||
         find_motes(replay, error, error_size)) {
         return -1;
     }
-    config.sensor.report_always = config.tracker.measures == QUANTITY_RANGE;
+    roster->sensor = (struct mh_sensor_config){.q20_per_count = 1,
+                                               .counts_min = INT32_MIN,
+                                               .counts_max = INT32_MAX,
+                                               .interval = replay->interval,
+                                               .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
+                                               .report_always = roster->tracker.measures == QUANTITY_RANGE};
+    if (roster_complete(roster, scenario, (mh_tick)(replay->lead + phase), error, error_size)) {
+        return -1;
+    }
     if (network_make(&replay->network, &config, error, error_size)) {
         return -1;
     }
@@ -214,10 +217,12 @@ int simulation_replay(const struct scenario *scenario, const struct recording *r
         const uint64_t end = first + instants * interval + replay.lead;
         result = network_run(&replay.network, end * (SIM_TIME_PER_S / MH_TICKS_PER_S), stop, error, error_size);
         *counters = (struct simulation_counters){.samples = replay.samples};
-        network_count(&replay.network, counters);
+    }
+    if (result == 0) {
+        result = network_count(&replay.network, counters, error, error_size);
     }
     network_free(&replay.network);
     free(replay.motes);
-    deployment_free(&replay.deployment);
+    roster_free(&replay.roster);
     return result;
 }

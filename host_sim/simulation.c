@@ -9,7 +9,7 @@
 
 struct run {
     const struct observer *observer;
-    struct deployment deployment;
+    struct roster roster;
     struct field field;
     struct sensors sensors;
     double *concentrations;
@@ -51,12 +51,13 @@ static int sample(void *context)
     if (field_prepare(&run->field, time_s)) {
         return -1;
     }
-    for (size_t i = 0; i < run->deployment.count; i++) {
-        const struct recorded_node *node = &run->deployment.nodes[i];
+    const struct deployment *deployment = &run->roster.deployment;
+    for (size_t i = 0; i < deployment->count; i++) {
+        const struct recorded_node *node = &deployment->nodes[i];
         run->concentrations[i] = field_concentration(&run->field, node->x_m, node->y_m);
     }
     sensors_read(&run->sensors, instant, run->concentrations, run->counts);
-    for (size_t i = 0; i < run->deployment.count; i++) {
+    for (size_t i = 0; i < deployment->count; i++) {
         if (!sensors_lost(&run->sensors, instant, time_s, i)) {
             network_reading(&run->network, (uint32_t)i, run->counts[i], 0);
         }
@@ -66,38 +67,25 @@ static int sample(void *context)
 
 static int bring_up(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
-    const struct mh_place far_corner = place_from_metres(scenario->field.width_m, scenario->field.height_m, 0);
-    const struct mh_region region = {0, far_corner.x_mm, 0, far_corner.y_mm};
-    struct network_config config = {.scenario = scenario,
-                                    .deployment = &run->deployment,
-                                    .sensor = sensor_config(scenario),
-                                    .range_m = scenario->radio.range_m,
-                                    .seed = seed,
-                                    .observer = run->observer,
-                                    .context = run,
-                                    .instant = sample,
-                                    .report = report};
-    if (deployment_make(&run->deployment, scenario, seed, error, error_size) ||
-        field_make(&run->field, scenario, error, error_size) ||
-        tracker_choose(scenario, &region, &config.tracker, error, error_size) ||
-        protocol_choose(scenario->network.protocol, scenario, &config.protocol, error, error_size)) {
+    const struct network_config config = {.scenario = scenario,
+                                          .roster = &run->roster,
+                                          .range_m = scenario->radio.range_m,
+                                          .seed = seed,
+                                          .observer = run->observer,
+                                          .context = run,
+                                          .instant = sample,
+                                          .report = report};
+    if (roster_make(&run->roster, scenario, seed, error, error_size) ||
+        field_make(&run->field, scenario, error, error_size)) {
         return -1;
     }
-    if (config.tracker.measures != QUANTITY_CONCENTRATION) {
-        snprintf(error, error_size, "tracker.name: `%s` works on ranges, a diffusing source gives concentrations",
-                 scenario->tracker.name);
-        return -1;
-    }
-    if (config.sensor.interval < 1) {
-        snprintf(error, error_size, "sensor.interval_s: %g, expected at least 0.001", scenario->sensor.interval_s);
-        return -1;
-    }
-    run->interval = (sim_time)config.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
+    const size_t nodes = run->roster.deployment.count;
+    run->interval = (sim_time)run->roster.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
-    run->concentrations = malloc(run->deployment.count * sizeof *run->concentrations);
-    run->counts = malloc(run->deployment.count * sizeof *run->counts);
-    if (!run->concentrations || !run->counts || sensors_make(&run->sensors, scenario, seed, run->deployment.count)) {
-        snprintf(error, error_size, "out of memory for %zu nodes", run->deployment.count);
+    run->concentrations = malloc(nodes * sizeof *run->concentrations);
+    run->counts = malloc(nodes * sizeof *run->counts);
+    if (!run->concentrations || !run->counts || sensors_make(&run->sensors, scenario, seed, nodes)) {
+        snprintf(error, error_size, "out of memory for %zu nodes", nodes);
         return -1;
     }
     if (network_make(&run->network, &config, error, error_size)) {
@@ -117,7 +105,7 @@ static void tear_down(struct run *run)
     free(run->counts);
     free(run->concentrations);
     field_free(&run->field);
-    deployment_free(&run->deployment);
+    roster_free(&run->roster);
 }
 
 int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
@@ -130,7 +118,9 @@ int simulation_run(const struct scenario *scenario, uint64_t seed, const struct 
         /* The head waits for the last instant's measurements less than one interval. */
         result = network_run(&run.network, run.instants * run.interval, stop, error, error_size);
         *counters = (struct simulation_counters){.samples = run.next};
-        network_count(&run.network, counters);
+    }
+    if (result == 0) {
+        result = network_count(&run.network, counters, error, error_size);
     }
     tear_down(&run);
     return result;

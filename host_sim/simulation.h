@@ -43,8 +43,8 @@ struct observer {
 
 /* Totals of a run, beside what the observer was told. */
 struct simulation_counters {
-    uint64_t events;
-    uint64_t samples;                       /* sampling instants while the source was present */
+    uint64_t events;  /* that motes handled: readings, frames heard, fates of frames, alarms ... */
+    uint64_t samples; /* sampling instants while the source was present */
     uint64_t frames_sent[MH_MESSAGE_KINDS]; /* by kind */
     uint64_t frames_received, frames_lost;
     struct mh_mote_counters motes; /* summed over all motes */
@@ -54,7 +54,7 @@ struct simulation_counters {
 };
 
 /* Run `scenario` with `seed`. Deterministic: the same scenario, seed and library give the same calls. `stop` (may be NULL) is
- * looked at between events: when it becomes nonzero the run ends early. Returns 0, or -1 with one line in `error`: a
+ * looked at between windows: when it becomes nonzero the run ends early. Returns 0, or -1 with one line in `error`: a
  * deployment file that cannot be read, a run that was stopped, no memory. Thread-safe: runs share nothing. */
 int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
                    const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error,

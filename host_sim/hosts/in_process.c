@@ -1,6 +1,8 @@
 #include "hosts/host.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Aligned for whatever a tracker or a protocol keeps. */
 union any {
@@ -22,19 +24,28 @@ struct in_process;
 struct slot {
     struct mh_mote mote;
     struct mh_mote_config config;
+    struct local_clock clock;
     struct in_process *host;
+    struct head_memory *head;     /* NULL on a mote that does not compute */
+    sim_time alarm, alarm_queued; /* when the mote wants it, and when the queue will remember it */
     uint32_t index;
+    bool up;
     union any protocol_state[];
 };
 
 struct in_process {
-    struct host_port port;
-    void *context;
+    struct event_queue alarms; /* of slots by the number of their mote */
     struct head_memory *heads;
     uint32_t count;
     const uint32_t *order;
-    size_t slot_size;
+    size_t slot_size, protocol_size;
     unsigned char *slots;
+    struct host_totals past; /* events, and the counters of motes that have started anew */
+    /* during run() */
+    sim_time now;
+    struct host_actions *actions;
+    enum mh_status refused; /* what a mote that did not come up said */
+    bool out_of_memory;
 };
 
 static struct slot *slot_of(const struct in_process *host, uint32_t mote)
@@ -42,44 +53,185 @@ static struct slot *slot_of(const struct in_process *host, uint32_t mote)
     return (struct slot *)(void *)(host->slots + host->order[mote] * host->slot_size);
 }
 
-static void transmit(void *context, mh_node_id destination, const uint8_t *frame, size_t length)
+/* ---- what a mote asks of its owner ---- */
+
+static struct host_action *act(struct slot *slot, enum host_action_kind kind)
 {
-    const struct slot *slot = context;
-    slot->host->port.transmit(slot->host->context, slot->index, destination, frame, length);
+    struct host_action *action = host_actions_add(slot->host->actions);
+    if (!action) {
+        slot->host->out_of_memory = true;
+        return NULL;
+    }
+    action->time = slot->host->now;
+    action->kind = kind;
+    action->mote = slot->index;
+    return action;
 }
 
-static void set_alarm(void *context, mh_tick time)
+static void transmit(void *context, mh_node_id destination, const uint8_t *frame, size_t length)
 {
-    const struct slot *slot = context;
-    slot->host->port.set_alarm(slot->host->context, slot->index, time);
+    struct host_action *action = act(context, HOST_TRANSMIT);
+    if (action) {
+        action->as.transmit.destination = destination;
+        action->as.transmit.length = (uint8_t)length;
+        memcpy(action->as.transmit.bytes, frame, length);
+    }
 }
 
 static void report(void *context, const struct mh_estimate *estimate)
 {
-    const struct slot *slot = context;
-    slot->host->port.report(slot->host->context, slot->index, estimate);
-}
-
-static const struct mh_port mote_port = {.transmit = transmit, .set_alarm = set_alarm, .report = report};
-
-static struct head_memory *new_head(struct in_process *host, const struct mh_head_config *config)
-{
-    struct head_memory *memory = calloc(1, sizeof *memory + config->tracker->state_size);
-    if (memory) {
-        memory->config = *config;
-        memory->config.tracker_state = memory->tracker_state;
-        memory->next = host->heads;
-        host->heads = memory;
+    struct host_action *action = act(context, HOST_REPORT);
+    if (action) {
+        action->as.estimate = *estimate;
     }
-    return memory;
 }
 
-static enum mh_status init(void *state, uint32_t mote, const struct host_mote *what, mh_tick now)
+static void may_sleep(void *context, bool may_sleep)
+{
+    struct host_action *action = act(context, HOST_SLEEP);
+    if (action) {
+        action->as.may_sleep = may_sleep;
+    }
+}
+
+static void queue_alarm(struct slot *slot)
+{
+    slot->alarm_queued = slot->alarm;
+    if (event_queue_push(&slot->host->alarms, slot->alarm, slot->index)) {
+        slot->host->out_of_memory = true;
+    }
+}
+
+/* The queue remembers the earliest time that was ever asked for; when it comes and the mote has meanwhile asked for a later one, that is
+ * remembered next. So a mote that puts its alarm off again and again does not fill the queue. */
+static void set_alarm(void *context, mh_tick tick)
+{
+    struct slot *slot = context;
+    const int64_t time = local_clock_time_of(&slot->clock, slot->host->now, tick);
+    slot->alarm = time < (int64_t)slot->host->now ? slot->host->now : (sim_time)time;
+    if (slot->alarm < slot->alarm_queued) {
+        queue_alarm(slot);
+    }
+}
+
+static const struct mh_port port = {transmit, set_alarm, report, may_sleep};
+
+/* ---- what happens to a mote ---- */
+
+static mh_tick tick_now(const struct slot *slot) { return local_clock_tick(&slot->clock, slot->host->now); }
+
+static void start(struct slot *slot)
+{
+    static const struct mh_head_counters no_head;
+    struct in_process *host = slot->host;
+    host_totals_add(&host->past, &slot->mote.counters, slot->head ? &slot->head->head.counters : &no_head);
+    memset(&slot->mote, 0, sizeof slot->mote);
+    memset(slot->protocol_state, 0, host->protocol_size);
+    if (slot->head) {
+        memset(&slot->head->head, 0, sizeof slot->head->head);
+        memset(slot->head->tracker_state, 0, slot->head->config.tracker->state_size);
+    }
+    slot->alarm = SIM_TIME_NEVER;
+    slot->up = true;
+    const enum mh_status status = mh_mote_init(&slot->mote, &slot->config, &port, slot, tick_now(slot));
+    if (status != MH_OK) {
+        slot->up = false;
+        host->refused = status;
+    }
+}
+
+static void stop(struct slot *slot)
+{
+    slot->up = false;
+    slot->alarm = SIM_TIME_NEVER;
+}
+
+static void read_sensor(struct slot *slot, const struct host_event *event)
+{
+    const mh_tick now = tick_now(slot);
+    const struct mh_reading reading = {
+        .time = now, .counts = event->as.reading.counts, .target = event->as.reading.target};
+    (void)mh_mote_reading(&slot->mote, now, &reading); /* counts what it refuses */
+}
+
+static void answer_probe(struct slot *slot)
+{
+    struct host_action *action = act(slot, HOST_CLOCK);
+    if (action) {
+        const int64_t now = (int64_t)slot->host->now;
+        action->as.clock_error_s = (double)(local_clock_us(&slot->clock, now) - now) / SIM_TIME_PER_S;
+    }
+}
+
+static void hear(struct in_process *host, const struct host_event *event)
+{
+    for (uint32_t i = 0; i < event->as.frame.count; i++) {
+        struct slot *slot = slot_of(host, event->as.frame.receivers[i]);
+        if (slot->up) {
+            (void)mh_mote_frame(&slot->mote, tick_now(slot), event->as.frame.bytes, event->as.frame.length);
+        }
+    }
+    host->past.events += event->as.frame.count;
+}
+
+static void happen(struct in_process *host, const struct host_event *event)
+{
+    host->now = event->time;
+    if (event->kind == HOST_FRAME) {
+        hear(host, event);
+        return;
+    }
+    host->past.events++;
+    struct slot *slot = slot_of(host, event->mote);
+    if (event->kind == HOST_START) {
+        start(slot);
+    } else if (slot->up) {
+        switch (event->kind) {
+        case HOST_STOP:
+            stop(slot);
+            break;
+        case HOST_READING:
+            read_sensor(slot, event);
+            break;
+        case HOST_SENT:
+            mh_mote_sent(&slot->mote, tick_now(slot), event->as.sent);
+            break;
+        case HOST_PROBE:
+            answer_probe(slot);
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+static void alarm_comes(struct in_process *host, const struct event *event)
+{
+    struct slot *slot = slot_of(host, event->content);
+    if (slot->alarm_queued != event->time) {
+        return; /* an earlier one has taken its place */
+    }
+    slot->alarm_queued = SIM_TIME_NEVER;
+    if (slot->alarm == event->time) {
+        slot->alarm = SIM_TIME_NEVER;
+        host->now = event->time;
+        host->past.events++;
+        mh_mote_alarm(&slot->mote, tick_now(slot));
+    } else if (slot->alarm != SIM_TIME_NEVER) {
+        queue_alarm(slot);
+    }
+}
+
+/* ---- the table ---- */
+
+static int add(void *state, uint32_t mote, const struct host_mote *what)
 {
     struct in_process *host = state;
     struct slot *slot = slot_of(host, mote);
     slot->host = host;
     slot->index = mote;
+    slot->clock = what->clock;
+    slot->alarm = slot->alarm_queued = SIM_TIME_NEVER;
     slot->config = (struct mh_mote_config){.id = what->id,
                                            .place = what->place,
                                            .sensor = what->sensor,
@@ -87,84 +239,103 @@ static enum mh_status init(void *state, uint32_t mote, const struct host_mote *w
                                            .protocol_config = what->protocol_config,
                                            .protocol_state = slot->protocol_state};
     if (what->head) {
-        struct head_memory *memory = new_head(host, what->head);
+        struct head_memory *memory = calloc(1, sizeof *memory + what->head->tracker->state_size);
         if (!memory) {
-            return MH_ERR_CAPACITY;
+            return -1;
         }
+        memory->config = *what->head;
+        memory->config.tracker_state = memory->tracker_state;
+        memory->next = host->heads;
+        host->heads = memory;
+        slot->head = memory;
         slot->config.head = &memory->config;
         slot->config.head_state = &memory->head;
     }
-    return mh_mote_init(&slot->mote, &slot->config, &mote_port, slot, now);
+    return 0;
 }
 
-static enum mh_status reading(void *state, uint32_t mote, mh_tick now, const struct mh_reading *what)
-{
-    return mh_mote_reading(&slot_of(state, mote)->mote, now, what);
-}
-
-static enum mh_status frame(void *state, uint32_t mote, mh_tick now, const uint8_t *bytes, size_t length)
-{
-    return mh_mote_frame(&slot_of(state, mote)->mote, now, bytes, length);
-}
-
-static void alarm_due(void *state, uint32_t mote, mh_tick now) { mh_mote_alarm(&slot_of(state, mote)->mote, now); }
-
-static void count(const void *state, struct mh_mote_counters *motes, struct mh_head_counters *heads)
+static sim_time next(const void *state)
 {
     const struct in_process *host = state;
+    return event_queue_next(&host->alarms);
+}
+
+static int run(void *state, sim_time until, const struct host_event *events, size_t count, struct host_actions *actions,
+               char *error, size_t error_size)
+{
+    struct in_process *host = state;
+    host->actions = actions;
+    host->refused = MH_OK;
+    host->out_of_memory = false;
+    for (size_t i = 0;;) {
+        const sim_time alarm = event_queue_next(&host->alarms);
+        if (i < count && events[i].time <= alarm) {
+            happen(host, &events[i++]);
+        } else if (alarm < until) {
+            struct event event;
+            (void)event_queue_pop(&host->alarms, &event);
+            alarm_comes(host, &event);
+        } else {
+            break;
+        }
+    }
+    if (host->refused != MH_OK) {
+        snprintf(error, error_size,
+                 "a mote does not come up (status %d): tracker.*, sensor.* or radio.* has a value outside its range",
+                 host->refused);
+        return -1;
+    }
+    if (host->out_of_memory) {
+        snprintf(error, error_size, "out of memory");
+        return -1;
+    }
+    return 0;
+}
+
+static int count(void *state, struct host_totals *totals, char *error, size_t error_size)
+{
+    (void)error;
+    (void)error_size;
+    static const struct mh_head_counters no_head;
+    const struct in_process *host = state;
+    totals->events += host->past.events;
+    host_totals_add(totals, &host->past.motes, &host->past.heads);
     for (uint32_t i = 0; i < host->count; i++) {
-        const struct mh_mote_counters *from = &slot_of(host, i)->mote.counters;
-        motes->readings += from->readings;
-        motes->readings_refused += from->readings_refused;
-        motes->readings_repeated += from->readings_repeated;
-        motes->reports += from->reports;
-        motes->reports_asked += from->reports_asked;
-        motes->reports_no_route += from->reports_no_route;
-        motes->frames_sent += from->frames_sent;
-        motes->frames_received += from->frames_received;
-        motes->frames_corrupt += from->frames_corrupt;
-        motes->frames_unknown += from->frames_unknown;
+        const struct slot *slot = slot_of(host, i);
+        host_totals_add(totals, &slot->mote.counters, slot->head ? &slot->head->head.counters : &no_head);
     }
-    for (const struct head_memory *memory = host->heads; memory; memory = memory->next) {
-        const struct mh_head_counters *from = &memory->head.counters;
-        heads->measurements += from->measurements;
-        heads->late += from->late;
-        heads->repeated += from->repeated;
-        heads->overflowed += from->overflowed;
-        heads->estimates += from->estimates;
-    }
+    return 0;
 }
 
 static void destroy(void *state)
 {
     struct in_process *host = state;
     while (host->heads) {
-        struct head_memory *next = host->heads->next;
+        struct head_memory *following = host->heads->next;
         free(host->heads);
-        host->heads = next;
+        host->heads = following;
     }
+    event_queue_free(&host->alarms);
     free(host->slots);
     free(host);
 }
 
-int host_in_process(struct host *host, uint32_t mote_count, const uint32_t *order, const struct mh_protocol *protocol,
-                    const struct host_port *port, void *context)
+int host_in_process(struct host *host, uint32_t mote_count, const uint32_t *order, const struct mh_protocol *protocol)
 {
     struct in_process *state = calloc(1, sizeof *state);
     if (!state) {
         return -1;
     }
     const size_t units = (protocol->state_size + sizeof(union any) - 1) / sizeof(union any);
-    state->port = *port;
-    state->context = context;
     state->count = mote_count;
     state->order = order;
+    state->protocol_size = protocol->state_size;
     state->slot_size = sizeof(struct slot) + units * sizeof(union any);
     state->slots = calloc(mote_count, state->slot_size);
     if (!state->slots) {
         free(state);
         return -1;
     }
-    *host = (struct host){state, init, reading, frame, alarm_due, count, destroy};
+    *host = (struct host){state, add, next, run, count, destroy};
     return 0;
 }

@@ -1,7 +1,7 @@
 /* The default tracker with and without the silent nodes that it asks for, on the same readings and with nothing lost: their silence says where
  * the source is not. */
 #include "experiment.h"
-#include "network.h"
+#include "roster.h"
 #include "port.h"
 #include "readings.h"
 #include "record/statistics.h"

@@ -1,0 +1,45 @@
+/* Who is in the network: what each mote of a run is. The nodes with sensors are motes 0, 1, 2 ... in the order of their identifiers; one
+ * more, the sink, has no sensor but the head, and the largest node's identifier plus one.
+ *
+ * It follows from the scenario and the seed alone, so every process that hosts motes of a run can make it for itself. */
+#ifndef MOTEHOUND_SIM_ROSTER_H
+#define MOTEHOUND_SIM_ROSTER_H
+
+#include "hosts/host.h"
+#include "scenario/scenario.h"
+#include "trackers.h"
+#include "world/deployment.h"
+
+/* Points into itself: not to be copied or moved once it is made. */
+struct roster {
+    struct deployment deployment;
+    double sink_x_m, sink_y_m;
+    struct mh_sensor_config sensor;
+    struct tracker_choice tracker;
+    struct protocol_choice protocol;
+    struct mh_head_config head;
+    uint32_t count; /* of motes, the sink included */
+    mh_node_id sink_id;
+};
+
+/* The motes of `scenario` run with `seed`. Returns 0, or -1 with one line in `error`; roster_free it in any case. */
+int roster_make(struct roster *roster, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size);
+
+/* The same where the caller has filled in deployment, sensor, tracker and protocol; `epoch` is a sampling instant. */
+int roster_complete(struct roster *roster, const struct scenario *scenario, mh_tick epoch, char *error,
+                    size_t error_size);
+
+void roster_free(struct roster *roster);
+
+/* What mote `mote` is. It points into the roster. */
+struct host_mote roster_mote(const struct roster *roster, uint32_t mote);
+
+mh_node_id roster_id(const struct roster *roster, uint32_t mote);
+
+/* The mote with identifier `id`; the sink's number where no node has it. */
+uint32_t roster_find(const struct roster *roster, mh_node_id id);
+
+/* Metres to a mote's millimetres. */
+struct mh_place place_from_metres(double x_m, double y_m, double z_m);
+
+#endif
