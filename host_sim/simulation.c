@@ -3,6 +3,7 @@
 #include "network.h"
 #include "world/field.h"
 #include "world/sensor.h"
+#include "world/traffic.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,20 +11,23 @@
 struct run {
     const struct observer *observer;
     struct roster roster;
+    struct traffic traffic; /* where there is no source; else the next six */
     struct field field;
     struct sensors sensors;
     double *concentrations;
     int32_t *counts;
-    struct network network;
     sim_time interval;
     uint64_t instants, next; /* in all, and the one to come */
+    sim_time end;
+    struct network network;
 };
 
 static struct truth truth_at(const struct run *run, double time_s)
 {
-    struct truth truth = {.time_s = time_s, .present = time_s >= 0 && time_s <= run->field.trajectory.duration_s};
+    const struct trajectory *path = &run->field.trajectory;
+    struct truth truth = {.time_s = time_s, .present = path->count > 0 && time_s >= 0 && time_s <= path->duration_s};
     if (truth.present) {
-        const struct point p = trajectory_position(&run->field.trajectory, time_s);
+        const struct point p = trajectory_position(path, time_s);
         truth.x_m = p.x_m;
         truth.y_m = p.y_m;
     }
@@ -65,37 +69,50 @@ static int sample(void *context)
     return run->next < run->instants ? network_schedule(&run->network, run->next * run->interval) : 0;
 }
 
+/* A source of synthetic traffic takes its sample, which it reports whatever it is. */
+static int sample_one(void *context)
+{
+    struct run *run = context;
+    network_reading(&run->network, traffic_take(&run->traffic), 0, 0);
+    return network_schedule(&run->network, traffic_next(&run->traffic));
+}
+
+static int make_world(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
+{
+    const size_t nodes = run->roster.deployment.count;
+    run->interval = (sim_time)run->roster.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
+    if (scenario->source.path == PATH_NONE) {
+        run->end = (sim_time)(scenario->source.duration_s * SIM_TIME_PER_S);
+        return traffic_make(&run->traffic, (size_t)scenario->traffic.sources, nodes, run->interval, seed);
+    }
+    if (field_make(&run->field, scenario, error, error_size)) {
+        return -1;
+    }
+    run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
+    run->end =
+        run->instants * run->interval; /* the head waits for the last instant's measurements less than one interval */
+    run->concentrations = malloc(nodes * sizeof *run->concentrations);
+    run->counts = malloc(nodes * sizeof *run->counts);
+    return run->concentrations && run->counts ? sensors_make(&run->sensors, scenario, seed, nodes) : -1;
+}
+
 static int bring_up(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
+    const bool has_source = scenario->source.path != PATH_NONE;
     const struct network_config config = {.scenario = scenario,
                                           .roster = &run->roster,
                                           .range_m = scenario->radio.range_m,
                                           .seed = seed,
                                           .observer = run->observer,
                                           .context = run,
-                                          .instant = sample,
+                                          .instant = has_source ? sample : sample_one,
                                           .report = report};
+    snprintf(error, error_size, "out of memory");
     if (roster_make(&run->roster, scenario, seed, error, error_size) ||
-        field_make(&run->field, scenario, error, error_size)) {
+        make_world(run, scenario, seed, error, error_size) || network_make(&run->network, &config, error, error_size)) {
         return -1;
     }
-    const size_t nodes = run->roster.deployment.count;
-    run->interval = (sim_time)run->roster.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
-    run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
-    run->concentrations = malloc(nodes * sizeof *run->concentrations);
-    run->counts = malloc(nodes * sizeof *run->counts);
-    if (!run->concentrations || !run->counts || sensors_make(&run->sensors, scenario, seed, nodes)) {
-        snprintf(error, error_size, "out of memory for %zu nodes", nodes);
-        return -1;
-    }
-    if (network_make(&run->network, &config, error, error_size)) {
-        return -1;
-    }
-    if (network_schedule(&run->network, 0)) {
-        snprintf(error, error_size, "out of memory");
-        return -1;
-    }
-    return 0;
+    return network_schedule(&run->network, has_source ? 0 : traffic_next(&run->traffic));
 }
 
 static void tear_down(struct run *run)
@@ -105,6 +122,7 @@ static void tear_down(struct run *run)
     free(run->counts);
     free(run->concentrations);
     field_free(&run->field);
+    traffic_free(&run->traffic);
     roster_free(&run->roster);
 }
 
@@ -115,8 +133,7 @@ int simulation_run(const struct scenario *scenario, uint64_t seed, const struct 
     struct run run = {.observer = observer};
     int result = bring_up(&run, scenario, seed, error, error_size);
     if (result == 0) {
-        /* The head waits for the last instant's measurements less than one interval. */
-        result = network_run(&run.network, run.instants * run.interval, stop, error, error_size);
+        result = network_run(&run.network, run.end, stop, error, error_size);
         *counters = (struct simulation_counters){.samples = run.next};
     }
     if (result == 0) {

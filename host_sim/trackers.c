@@ -96,6 +96,11 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         mh_direct_config_default(&choice->config.direct);
         return 0;
     }
-    snprintf(error, error_size, "network.protocol: `%s`, expected collection or direct", name);
+    if (strcmp(name, chatter_protocol.name) == 0) {
+        choice->protocol = &chatter_protocol;
+        choice->config.chatter.interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S);
+        return 0;
+    }
+    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct or chatter", name);
     return -1;
 }

@@ -8,6 +8,7 @@
 #include "motehound/luo.h"
 #include "motehound/range.h"
 #include "scenario/scenario.h"
+#include "world/chatter.h"
 
 /* What a tracker's measurements are. */
 enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
@@ -27,6 +28,7 @@ struct protocol_choice {
     union {
         struct mh_collection_config collection;
         struct mh_direct_config direct;
+        struct chatter_config chatter;
     } config;
 };
 

@@ -18,6 +18,7 @@ struct command {
 int command_list(struct command *command);
 int command_run(struct command *command);
 int command_replay(struct command *command);
+int command_bench(struct command *command);
 
 /* What run and replay have in common: a batch into folder `out`, with progress on a terminal, and a table of results on
  * standard output. Returns as a command does. */

@@ -7,12 +7,13 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char help[] = "motehound list | run | replay [OPTIONS]\n"
+static const char help[] = "motehound list | run | replay | bench [OPTIONS]\n"
                            "\n"
                            "Tracks a moving or hidden source with a simulated or recorded network of sensor motes.\n"
                            "  motehound list     scenarios, trackers and keys\n"
                            "  motehound run      simulate a scenario\n"
                            "  motehound replay   feed a recording through the same motes\n"
+                           "  motehound bench    measure what simulating costs\n"
                            "  motehound COMMAND --help; motehound --version\n";
 
 /* The one global: a signal handler can reach nothing else. */
@@ -35,6 +36,9 @@ static int dispatch(const char *name, struct command *command)
     if (strcmp(name, "replay") == 0) {
         return command_replay(command);
     }
+    if (strcmp(name, "bench") == 0) {
+        return command_bench(command);
+    }
     if (strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
         fputs(help, stdout);
         return 0;
@@ -44,7 +48,7 @@ static int dispatch(const char *name, struct command *command)
         return 0;
     }
     fail(command->error, sizeof command->error,
-         "motehound: expected list, run or replay, found '%.100s'; see motehound --help", name);
+         "motehound: expected list, run, replay or bench, found '%.100s'; see motehound --help", name);
     return 1;
 }
 

@@ -14,7 +14,8 @@ enum random_purpose {
     RANDOM_ADDITIVE_NOISE,
     RANDOM_READING_LOSS,
     RANDOM_RADIO_LOSS,
-    RANDOM_CLOCK
+    RANDOM_CLOCK,
+    RANDOM_TRAFFIC
 };
 
 struct random_stream {

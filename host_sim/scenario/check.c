@@ -27,6 +27,7 @@ static double duration(const struct scenario *scenario)
     case PATH_ARCS: /* two quarters of a circle whose chords are each half the way */
         return leg_length(&points[0], &points[1]) / (4 * sin(acos(-1) / 4)) * acos(-1) / scenario->source.speed_mps;
     case PATH_STILL:
+    case PATH_NONE:
         return scenario->source.duration_s;
     }
     return 0;
@@ -42,8 +43,10 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         (points != 2 || leg_length(&scenario->source.points[0], &scenario->source.points[1]) <= 0)) {
         return fail(error, error_size, "%s: source.points: expected 2 different ones for arcs, found %u", name, points);
     }
-    if (scenario->source.path == PATH_STILL && scenario->source.duration_s <= 0) {
-        return fail(error, error_size, "%s: source.duration_s: expected more than 0 for a still source, found 0", name);
+    if ((scenario->source.path == PATH_STILL || scenario->source.path == PATH_NONE) &&
+        scenario->source.duration_s <= 0) {
+        return fail(error, error_size, "%s: source.duration_s: expected more than 0 for a still source or none, found 0",
+                    name);
     }
     const double run_s = duration(scenario);
     if (!(run_s > 0) || run_s > RUN_MAX_S) {
@@ -56,6 +59,18 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
     }
     if (scenario->network.layout == LAYOUT_FILE && scenario->network.file[0] == '\0') {
         return fail(error, error_size, "%s: network.file: expected a nodes.csv for layout file, found nothing", name);
+    }
+    const double spacing_m = scenario->network.spacing_m;
+    const double cells = spacing_m > 0 ? floor(scenario->field.width_m / spacing_m * (1 + 1e-9)) *
+                                             floor(scenario->field.height_m / spacing_m * (1 + 1e-9))
+                                       : (double)INFINITY;
+    if (scenario->network.layout == LAYOUT_GRID && cells < (double)scenario->network.nodes) {
+        return fail(error, error_size, "%s: network.spacing_m: expected cells for %lld nodes in the field, found %.0f",
+                    name, (long long)scenario->network.nodes, cells);
+    }
+    if (scenario->traffic.sources > 0 && scenario->source.path != PATH_NONE) {
+        return fail(error, error_size, "%s: traffic.sources: expected 0 unless source.path is none, found %lld", name,
+                    (long long)scenario->traffic.sources);
     }
     if (scenario->network.sink_x_m < 0 || scenario->network.sink_x_m > scenario->field.width_m) {
         return fail(error, error_size, "%s: network.sink_x_m: expected a number 0 to field.width_m = %g, found %g",

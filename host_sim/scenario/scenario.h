@@ -13,7 +13,8 @@
 enum path_kind {
     PATH_WAYPOINTS, /* straight legs between points, each leg at its own speed factor */
     PATH_ARCS,      /* two circular arcs of 90 degrees, turning left then right, from the first point to the second */
-    PATH_STILL      /* stays at the first point for duration_s */
+    PATH_STILL,     /* stays at the first point for duration_s */
+    PATH_NONE       /* there is no source: for duration_s the nodes report synthetic traffic */
 };
 
 struct waypoint {
@@ -34,7 +35,7 @@ struct scenario {
         struct waypoint *points;
         unsigned points_count;
         double speed_mps;
-        double duration_s;        /* of PATH_STILL; 0: the path's own */
+        double duration_s;        /* of PATH_STILL and PATH_NONE; 0: the path's own */
         double release_gps;       /* mean release rate mu */
         double release_variation; /* mu(t) = release (1 + variation sin(2 pi t / release_period)), 0 to 0.95 */
         double release_period_s;
@@ -43,10 +44,15 @@ struct scenario {
     struct {
         int64_t nodes;
         enum layout_kind layout;
-        char *file; /* nodes.csv of LAYOUT_FILE, relative to the scenario */
+        char *file;       /* nodes.csv of LAYOUT_FILE, relative to the scenario */
+        double spacing_m; /* of LAYOUT_GRID; 0: the nodes fill the field */
+        double jitter;    /* of LAYOUT_GRID: share of a cell by which a node may stand off its middle */
         double sink_x_m, sink_y_m;
         char *protocol; /* `collection` */
     } network;
+    struct {
+        int64_t sources; /* nodes that report once in sensor.interval_s where source.path is none */
+    } traffic;
     struct {
         double interval_s;               /* between samples, T */
         double relative_noise;           /* sd as a share of the reading */

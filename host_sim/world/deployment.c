@@ -51,16 +51,24 @@ static size_t grid_columns(size_t count, double width_m, double height_m)
     return (size_t)fmin(fmax(square, 1), (double)count);
 }
 
-static void lay_grid(struct deployment *deployment, double width_m, double height_m)
+static void lay_grid(struct deployment *deployment, const struct scenario *scenario, uint64_t seed)
 {
+    const struct random_stream stream = random_stream(seed, RANDOM_DEPLOYMENT);
     const size_t count = deployment->count;
-    const size_t columns = grid_columns(count, width_m, height_m);
+    const double spacing_m = scenario->network.spacing_m, jitter = scenario->network.jitter;
+    const bool fills = spacing_m <= 0;
+    const size_t columns = fills ? grid_columns(count, scenario->field.width_m, scenario->field.height_m)
+                                 : (size_t)(scenario->field.width_m / spacing_m * (1 + 1e-9));
     const size_t rows = (count + columns - 1) / columns;
+    const double width_m = fills ? scenario->field.width_m : spacing_m * (double)columns;
+    const double height_m = fills ? scenario->field.height_m : spacing_m * (double)rows;
     for (size_t i = 0; i < count; i++) {
         const size_t row = i / columns;
-        const size_t in_row = row + 1 < rows ? columns : count - row * columns;
-        deployment->nodes[i].x_m = width_m * ((double)(i % columns) + 0.5) / (double)in_row;
-        deployment->nodes[i].y_m = height_m * ((double)row + 0.5) / (double)rows;
+        const size_t in_row = row + 1 < rows || !fills ? columns : count - row * columns;
+        const double x_off = jitter * (2 * random_uniform(stream, 2 * i) - 1);
+        const double y_off = jitter * (2 * random_uniform(stream, 2 * i + 1) - 1);
+        deployment->nodes[i].x_m = width_m * ((double)(i % columns) + 0.5 + x_off) / (double)in_row;
+        deployment->nodes[i].y_m = height_m * ((double)row + 0.5 + y_off) / (double)rows;
     }
 }
 
@@ -118,7 +126,7 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
         lay_r2(deployment, width_m, height_m, seed);
         break;
     case LAYOUT_GRID:
-        lay_grid(deployment, width_m, height_m);
+        lay_grid(deployment, scenario, seed);
         break;
     case LAYOUT_FILE:
         break;

@@ -18,7 +18,8 @@ struct deployment {
  *
  * uniform: node i = (width u_2i, height u_2i+1), u from the SplitMix64 stream of `seed`.
  * r2: node i = (width, height) * frac(1/2 + (i + 1 + 1000 seed) * (0.7548776662466927, 0.5698402909980532)), Roberts' R2 sequence.
- * grid: cell-centred, row by row. The number of columns divides the number of nodes, so that the cells are as square as can be (of
+ * grid: cell-centred, row by row, each coordinate off the middle of its cell by up to network.jitter of the cell's side (uniform; u_2i and
+ *   u_2i+1 of the same stream). Cells are squares of network.spacing_m, as many in a row as the field is wide, or fill the field: the number of columns divides the number of nodes, so that the cells are as square as can be (of
  *   two equally square ones the one with fewer columns: 32 x 40 for 1,280 in a square). Where that leaves cells longer than
  *   2 : 1 they are made square and the last row has fewer nodes, evenly spread.
  * file: the nodes of scenario->network.file, sorted.

@@ -13,6 +13,7 @@ struct mh_sensor_config sensor_config(const struct scenario *scenario)
         .counts_max = ideal ? INT32_MAX : (int32_t)((INT64_C(1) << bits) - 1),
         .interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S),
         .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
+        .report_always = scenario->source.path == PATH_NONE,
     };
 }
 

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 /* How scenario->sensor converts: the quantum is full_scale / 2^adc_bits, as a whole number of 2^-20 g/m2 (at least 1), so that the
- * mote's q20_per_count states it exactly; with adc_bits 0 it is 2^-20 g/m2 itself, to the end of Q11.20. Threshold
+ * mote's q20_per_count states it exactly; with adc_bits 0 it is 2^-20 g/m2 itself, to the end of Q11.20. Where there is no source, every sample is reported. Threshold
  * chi and interval come from scenario->tracker and scenario->sensor. */
 struct mh_sensor_config sensor_config(const struct scenario *scenario);
 

@@ -109,6 +109,8 @@ int trajectory_make(struct trajectory *trajectory, const struct scenario *scenar
         append(trajectory,
                (struct leg){.duration_s = scenario->source.duration_s, .start = {points[0].x_m, points[0].y_m}});
         break;
+    case PATH_NONE:
+        break;
     }
     return 0;
 }

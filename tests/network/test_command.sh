@@ -11,11 +11,11 @@ accepted "$MOTEHOUND" list --metrics
 grep -q '^energy_mj_routing ' out.txt || complain "list --metrics: no energy_mj_routing"
 accepted "$MOTEHOUND" --version
 accepted "$MOTEHOUND" --help
-for command in list run replay; do accepted "$MOTEHOUND" $command --help; done
+for command in list run replay bench; do accepted "$MOTEHOUND" $command --help; done
 
 # words
-refused 'expected list, run or replay' "$MOTEHOUND"
-refused "expected list, run or replay, found 'walk'" "$MOTEHOUND" walk
+refused 'expected list, run, replay or bench' "$MOTEHOUND"
+refused "expected list, run, replay or bench, found 'walk'" "$MOTEHOUND" walk
 refused "unknown option '--run'" "$MOTEHOUND" run luo_exp1 --run 3
 refused 'expected a scenario, found nothing' "$MOTEHOUND" run
 refused "found 'luo_exp2' too" "$MOTEHOUND" run luo_exp1 luo_exp2

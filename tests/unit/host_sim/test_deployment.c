@@ -93,6 +93,31 @@ static void grid_of_a_prime_number(void)
     assert_even(16);
 }
 
+/* 30 m cells in a field of 35 x 40 of them: the last row is cut short, and each node is uniform in the middle 60 % of its cell. */
+static void grid_with_spacing_and_jitter(void)
+{
+    struct scenario scenario = of_layout(LAYOUT_GRID, 1000);
+    scenario.field.width_m = 35 * 30 + 1;
+    scenario.field.height_m = 1200;
+    scenario.network.spacing_m = 30;
+    scenario.network.jitter = 0.3;
+    TEST_ASSERT_EQUAL_INT(0, deployment_make(&nodes, &scenario, 1, error, sizeof error));
+    TEST_ASSERT_EQUAL_UINT(1000, nodes.count);
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < 1000; i++) {
+        const double off[2] = {nodes.nodes[i].x_m / 30 - ((double)(i % 35) + 0.5),
+                               nodes.nodes[i].y_m / 30 - ((double)(i / 35) + 0.5)};
+        for (int axis = 0; axis < 2; axis++) {
+            TEST_ASSERT_TRUE(fabs(off[axis]) <= 0.3);
+            sum += off[axis];
+            squares += off[axis] * off[axis];
+        }
+    }
+    TEST_ASSERT_TRUE(fabs(sum / 2000) < 4 * 0.3 / sqrt(3 * 2000)); /* mean 0 */
+    TEST_ASSERT_TRUE(fabs(squares / 2000 / 0.03 - 1) <
+                     4 * sqrt(0.8 / 2000)); /* variance 0.3^2 / 3; that of its square is 0.8 as large */
+}
+
 static void file_brings_its_own(void)
 {
     static char path[] = "deployment_test_nodes.csv";
@@ -126,6 +151,7 @@ int main(void)
     RUN_TEST(r2_shifts_with_the_seed);
     RUN_TEST(grid_is_32_by_40);
     RUN_TEST(grid_of_a_prime_number);
+    RUN_TEST(grid_with_spacing_and_jitter);
     RUN_TEST(file_brings_its_own);
     port_exit(UNITY_END() > 0);
     return 0;
