@@ -15,7 +15,9 @@ enum random_purpose {
     RANDOM_READING_LOSS,
     RANDOM_RADIO_LOSS,
     RANDOM_CLOCK,
-    RANDOM_TRAFFIC
+    RANDOM_TRAFFIC,
+    RANDOM_FAULTS, /* whom they hit */
+    RANDOM_SPIKES
 };
 
 struct random_stream {
