@@ -248,7 +248,6 @@ int network_run(struct network *network, sim_time end, const volatile sig_atomic
 
 static int make_radio(struct network *network)
 {
-    const struct scenario *scenario = network->config.scenario;
     const struct roster *roster = network->config.roster;
     const size_t nodes = roster->deployment.count;
     double *x_m = malloc(2 * sizeof *x_m * roster->count);
@@ -262,7 +261,7 @@ static int make_radio(struct network *network)
     }
     x_m[nodes] = roster->sink_x_m;
     y_m[nodes] = roster->sink_y_m;
-    const struct radio_config config = {network->config.range_m, scenario->radio.bitrate_bps, scenario->radio.loss};
+    const struct radio_config config = radio_config_of(network->config.scenario, network->config.range_m);
     const int result = radio_make(&network->radio, &config, x_m, y_m, roster->count, network->config.seed);
     free(x_m);
     return result;
@@ -305,7 +304,7 @@ int network_make(struct network *network, const struct network_config *config, c
     *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
     learn_fingerprints(network);
     if (make_radio(network) ||
-        host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->kit.protocol.protocol) ||
+        host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->protocol.protocol) ||
         bring_up(network)) {
         snprintf(error, error_size, "out of memory for %u nodes", (unsigned)roster->count);
         network_free(network);
@@ -342,9 +341,12 @@ int network_count(struct network *network, struct simulation_counters *counters,
     counters->motes = totals.motes;
     counters->head = totals.heads;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);
-    counters->frames_received = network->radio.received;
-    for (int reason = 0; reason < LOSS_REASONS; reason++) {
-        counters->frames_lost += network->radio.lost[reason];
+    const struct radio_counters *radio = &network->radio.counters;
+    counters->frames_repeated = radio->frames_repeated;
+    counters->frames_received = radio->frames_received;
+    memcpy(counters->frames_lost_by, radio->lost, sizeof counters->frames_lost_by);
+    for (int reason = 0; LOSS_AT_RECEIVER(reason); reason++) {
+        counters->frames_lost += radio->lost[reason];
     }
     return 0;
 }

@@ -4,6 +4,7 @@
 
 #include "energy/energy.h"
 #include "motehound/mote.h"
+#include "radio/loss.h"
 #include "scenario/recording.h"
 #include "scenario/scenario.h"
 
@@ -46,7 +47,8 @@ struct simulation_counters {
     uint64_t events;  /* that motes handled: readings, frames heard, fates of frames, alarms ... */
     uint64_t samples; /* sampling instants while the source was present */
     uint64_t frames_sent[MH_MESSAGE_KINDS]; /* by kind */
-    uint64_t frames_received, frames_lost;
+    uint64_t frames_received, frames_lost;  /* receptions; the last one is the sum over the reasons at a receiver */
+    uint64_t frames_lost_by[LOSS_REASONS], frames_repeated;
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
     struct energy_totals energy; /* all NaN where energy is not accounted for */

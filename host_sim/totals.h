@@ -17,6 +17,18 @@
     X(FRAMES_SENT_LANDMARKS, "frames_sent_landmarks", c->frames_sent[MH_MESSAGE_LANDMARK], "of these landmarks, which say where the head is")      \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \
+    X(FRAMES_REPEATED, "frames_repeated", c->frames_repeated, "of the frames sent those sent again for want of an acknowledgement")                    \
+    X(FRAMES_LOST_COLLISION, "frames_lost_collision", c->frames_lost_by[LOSS_COLLISION], "of the receptions that failed, because of interference")     \
+    X(FRAMES_LOST_RANDOM, "frames_lost_random", c->frames_lost_by[LOSS_RANDOM], "of the receptions that failed, by the channel's own loss process")    \
+    X(FRAMES_LOST_DEAF, "frames_lost_deaf", c->frames_lost_by[LOSS_DEAF], "of the receptions that failed, because the receiver was sending")           \
+    X(FRAMES_LOST_ASLEEP, "frames_lost_asleep", c->frames_lost_by[LOSS_ASLEEP], "of the receptions that failed, because the receiver was asleep")      \
+    X(FRAMES_LOST_DEAD, "frames_lost_dead", c->frames_lost_by[LOSS_DEAD], "of the receptions that failed, because the receiver was dead, or the sender died over it")\
+    X(FRAMES_LOST_JAMMED, "frames_lost_jammed", c->frames_lost_by[LOSS_JAMMED], "of the receptions that failed, in a jammed zone")                     \
+    X(FRAMES_LOST_PARTITION, "frames_lost_partition", c->frames_lost_by[LOSS_PARTITION], "of the receptions that failed, by a partition of the network")\
+    X(FRAMES_LOST_RANGE, "frames_lost_range", c->frames_lost_by[LOSS_RANGE], "of the receptions that failed, because the addressee was out of range")  \
+    X(FRAMES_LOST_BUSY, "frames_lost_busy", c->frames_lost_by[LOSS_BUSY], "frames given up because the channel was never free")                        \
+    X(FRAMES_LOST_NO_ACK, "frames_lost_no_ack", c->frames_lost_by[LOSS_NO_ACK], "frames given up for want of an acknowledgement")                      \
+    X(FRAMES_LOST_QUEUE, "frames_lost_queue", c->frames_lost_by[LOSS_QUEUE], "frames that the radio refused because it was full")                      \
     X(READINGS, "readings", c->motes.readings, "samples taken by all motes")                                                                       \
     X(READINGS_REFUSED, "readings_refused", c->motes.readings_refused, "samples out of range or out of time")                                      \
     X(REPORTS, "reports", c->motes.reports, "readings that a mote reported")                                                                       \

@@ -4,270 +4,857 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What an event is: two bits of kind, thirty of index: a flight; a mote and its power. */
-enum { EVENT_BEGIN, EVENT_LAND, EVENT_POWER };
+#define NONE UINT32_MAX
 
-#define EVENT(kind, index) ((uint32_t)(kind) << 30 | (uint32_t)(index))
+/* What is weaker than the noise by this much is not felt: it would add 0.4 dB to it. */
+static const double disturbance_db = -10;
 
-static size_t column_of(const struct radio *radio, double x_m)
+enum {
+    LISTED_MAX = 1000, /* receivers of a mote that are kept; more are looked up each time */
+    MEETINGS_MAX = 256 /* transmissions that one can meet; more than can fit beside each other in a cell */
+};
+
+/* What happens: four bits of kind, 28 of index. */
+enum {
+    EVENT_FRAME,     /* a frame comes to its radio */
+    EVENT_TAKE_OFF,  /* ideal: a mote begins to send */
+    EVENT_LANDING,   /* ideal: a frame is there */
+    EVENT_ASSESSED,  /* a mote has assessed the channel */
+    EVENT_START,     /* a mote begins to send */
+    EVENT_END,       /* a flight ends */
+    EVENT_NO_ACK,    /* a mote has waited long enough */
+    EVENT_ACK_START, /* a mote begins to acknowledge */
+    EVENT_POWER_ON,  /* three of radio_power, in its order */
+    EVENT_POWER_ASLEEP,
+    EVENT_POWER_OFF
+};
+
+#define EVENT(kind, index) ((uint32_t)(kind) << 28 | (uint32_t)(index))
+
+struct radio_frame {
+    uint32_t sender, destination;
+    uint32_t next; /* in its sender's queue, or among the free ones */
+    uint8_t cause;
+    uint8_t length;
+    bool refused; /* the radio was full */
+    uint8_t bytes[MH_FRAME_MAX];
+};
+
+struct radio_receivers {
+    uint32_t count;
+    uint32_t mote[];
+};
+
+enum mac_state { MAC_IDLE, MAC_BACKOFF, MAC_TURNING, MAC_SENDING, MAC_WAITING };
+enum ack_state { ACK_NONE, ACK_TURNING, ACK_SENDING };
+
+struct radio_mote {
+    sim_time due;         /* of the event that the MAC waits for: others are out of date */
+    sim_time awake;       /* listens since, if it does */
+    uint32_t first, last; /* of its queue; NONE, NONE: empty */
+    struct csma csma;
+    uint32_t flight; /* being sent, frame or acknowledgement */
+    uint32_t ack_to;
+    uint16_t queued;
+    uint16_t signals; /* that arrive above the sensitivity, if states are shown */
+    uint8_t power, mac, ack, ack_cause, shown;
+};
+
+/* ---- making ---- */
+
+struct radio_config radio_config_of(const struct scenario *scenario, double range_m)
 {
-    return (size_t)fmin(fmax((x_m - radio->x_min_m) / radio->cell_m, 0), (double)(radio->columns - 1));
+    struct radio_config config = {.profile = *radio_profile_find(scenario->radio.profile),
+                                  .loss = scenario->radio.loss,
+                                  .queue = (unsigned)scenario->radio.queue};
+    struct radio_profile *profile = &config.profile;
+    if (!profile->contention) {
+        profile->bitrate_bps = scenario->radio.bitrate_bps;
+    }
+    if (scenario->radio.sensitivity_dbm < 0) {
+        profile->sensitivity_dbm = scenario->radio.sensitivity_dbm;
+    }
+    if (scenario->radio.retries >= 0) {
+        profile->retries = (unsigned)scenario->radio.retries;
+    }
+    if (scenario->radio.backoffs >= 0) {
+        profile->backoffs = (unsigned)scenario->radio.backoffs;
+    }
+    config.propagation = (struct propagation_config){
+        .kind = isinf(range_m) ? PROPAGATION_DISC : scenario->radio.propagation,
+        .range_m = range_m,
+        .power_dbm = scenario->radio.power_dbm,
+        .exponent = scenario->radio.path_loss_exponent,
+        .reference_loss_db = scenario->radio.reference_loss_db,
+        .shadowing_db = scenario->radio.shadowing_db,
+    };
+    return config;
 }
 
-static size_t row_of(const struct radio *radio, double y_m)
+/* In a disc every signal has power 1: noise there is none, of two that overlap neither is received, and the channel is busy if there
+ * is a signal at any time of its assessment. */
+static void set_powers(struct radio *radio)
 {
-    return (size_t)fmin(fmax((y_m - radio->y_min_m) / radio->cell_m, 0), (double)(radio->rows - 1));
+    const struct radio_profile *profile = &radio->config.profile;
+    radio->capture = mw_from_dbm(profile->capture_db);
+    if (radio->config.propagation.kind == PROPAGATION_DISC) {
+        radio->sensitivity = radio->disturbance = 1;
+        radio->noise = 0;
+        radio->cca_threshold = 1e-9;
+        return;
+    }
+    radio->sensitivity = mw_from_dbm(profile->sensitivity_dbm);
+    radio->noise = mw_from_dbm(profile->sensitivity_dbm - profile->noise_margin_db);
+    radio->cca_threshold = mw_from_dbm(profile->sensitivity_dbm + profile->cca_threshold_db);
+    radio->disturbance = radio->noise * mw_from_dbm(disturbance_db);
 }
 
-/* Half a range wide, but never so small that there are many more cells than places. */
-static void size_grid(struct radio *radio, const double *x_m, const double *y_m)
-{
-    double x_max = -HUGE_VAL, y_max = -HUGE_VAL;
-    radio->x_min_m = radio->y_min_m = HUGE_VAL;
-    for (size_t i = 0; i < radio->count; i++) {
-        radio->x_min_m = fmin(radio->x_min_m, x_m[i]);
-        radio->y_min_m = fmin(radio->y_min_m, y_m[i]);
-        x_max = fmax(x_max, x_m[i]);
-        y_max = fmax(y_max, y_m[i]);
-    }
-    const double width = x_max - radio->x_min_m, height = y_max - radio->y_min_m;
-    const double smallest = fmax(fmax(width, height) / sqrt((double)radio->count), 1e-3);
-    radio->cell_m = fmax(0.5 * radio->config.range_m, smallest);
-    radio->columns = (size_t)(width / radio->cell_m) + 1;
-    radio->rows = (size_t)(height / radio->cell_m) + 1;
-}
-
-/* Counting sort of the places by cell. */
-static void fill_grid(struct radio *radio, const double *x_m, const double *y_m)
-{
-    const size_t cells = radio->columns * radio->rows;
-    for (size_t i = 0; i < radio->count; i++) {
-        radio->cell_start[row_of(radio, y_m[i]) * radio->columns + column_of(radio, x_m[i]) + 1]++;
-    }
-    for (size_t c = 0; c < cells; c++) {
-        radio->cell_start[c + 1] += radio->cell_start[c];
-    }
-    for (size_t i = radio->count; i-- > 0;) {
-        const size_t cell = row_of(radio, y_m[i]) * radio->columns + column_of(radio, x_m[i]);
-        const size_t at = --radio->cell_start[cell + 1];
-        radio->sorted[at] = (struct radio_place){x_m[i], y_m[i], (uint32_t)i};
-        radio->position[i] = (uint32_t)at;
-    }
-    /* Each entry has moved down to the start of its cell, one place to the right of where it belongs. */
-    memmove(radio->cell_start, radio->cell_start + 1, cells * sizeof *radio->cell_start);
-    radio->cell_start[cells] = radio->count;
-}
+static sim_time rounded(double microseconds) { return (sim_time)llround(microseconds); }
 
 int radio_make(struct radio *radio, const struct radio_config *config, const double *x_m, const double *y_m,
                size_t count, uint64_t seed)
 {
-    *radio = (struct radio){.config = *config, .loss_stream = random_stream(seed, RANDOM_RADIO_LOSS), .count = count};
-    size_grid(radio, x_m, y_m);
-    radio->sorted = malloc(count * sizeof *radio->sorted);
-    radio->position = malloc(count * sizeof *radio->position);
-    radio->cell_start = calloc(radio->columns * radio->rows + 1, sizeof *radio->cell_start);
-    radio->free_from = calloc(count, sizeof *radio->free_from);
-    radio->power = calloc(count, sizeof *radio->power);
-    radio->receivers = malloc(count * sizeof *radio->receivers);
-    if (!radio->sorted || !radio->position || !radio->cell_start || !radio->free_from || !radio->power ||
-        !radio->receivers) {
+    *radio = (struct radio){.config = *config,
+                            .propagation = propagation_make(&config->propagation, count, seed),
+                            .channel = {config->loss, random_stream(seed, RANDOM_RADIO_LOSS), count},
+                            .backoff_stream = random_stream(seed, RANDOM_RADIO_BACKOFF),
+                            .free_frame = NONE};
+    set_powers(radio);
+    radio->reach_m = propagation_reach_m(&radio->propagation, radio->sensitivity);
+    if (places_make(&radio->places, x_m, y_m, count, radio->reach_m)) {
+        return -1;
+    }
+    const double disturbs_m = propagation_reach_m(&radio->propagation, radio->disturbance);
+    const sim_time longest = radio_profile_air_us(&config->profile, config->profile.preamble_bytes +
+                                                                        config->profile.header_bytes + MH_FRAME_MAX);
+    radio->motes = calloc(count, sizeof *radio->motes);
+    radio->receivers = calloc(count, sizeof *radio->receivers);
+    radio->found = malloc(count * sizeof *radio->found);
+    if (!radio->motes || !radio->receivers || !radio->found ||
+        air_make(&radio->air, &radio->places, radio->reach_m + disturbs_m,
+                 longest + rounded(config->profile.turnaround_us))) {
         radio_free(radio);
         return -1;
     }
-    fill_grid(radio, x_m, y_m);
+    for (size_t i = 0; i < count; i++) {
+        radio->motes[i].first = radio->motes[i].last = radio->motes[i].flight = NONE;
+        radio->motes[i].shown = RADIO_LISTEN;
+    }
     return 0;
 }
 
 void radio_free(struct radio *radio)
 {
-    free(radio->sorted);
-    free(radio->position);
-    free(radio->cell_start);
-    event_queue_free(&radio->queue);
-    free(radio->flights);
-    free(radio->free_flights);
-    free(radio->free_from);
-    free(radio->power);
+    for (size_t i = 0; radio->receivers && i < radio->places.count; i++) {
+        free(radio->receivers[i]);
+    }
     free(radio->receivers);
+    free(radio->motes);
+    free(radio->frames);
+    free(radio->found);
+    places_free(&radio->places);
+    air_free(&radio->air);
+    event_queue_free(&radio->events);
     *radio = (struct radio){0};
 }
 
-static int grow(struct radio *radio)
+static void push(struct radio *radio, sim_time time, uint32_t event)
 {
-    const size_t capacity = radio->flights_capacity ? 2 * radio->flights_capacity : 256;
-    struct radio_frame *flights = realloc(radio->flights, capacity * sizeof *flights);
-    if (!flights) {
+    if (event_queue_push(&radio->events, time, event)) {
+        radio->out_of_memory = true;
+    }
+}
+
+/* ---- frames ---- */
+
+static int grow_frames(struct radio *radio)
+{
+    const uint32_t capacity = radio->frames_capacity ? 2 * radio->frames_capacity : 64;
+    struct radio_frame *frames = realloc(radio->frames, capacity * sizeof *frames);
+    if (!frames) {
         return -1;
     }
-    radio->flights = flights;
-    uint32_t *free_flights = realloc(radio->free_flights, capacity * sizeof *free_flights);
-    if (!free_flights) {
-        return -1;
+    radio->frames = frames;
+    for (uint32_t i = capacity; i-- > radio->frames_capacity;) {
+        frames[i].next = radio->free_frame;
+        radio->free_frame = i;
     }
-    radio->free_flights = free_flights;
-    for (size_t i = capacity; i-- > radio->flights_capacity;) {
-        free_flights[radio->free_count++] = (uint32_t)i;
-    }
-    radio->flights_capacity = capacity;
+    radio->frames_capacity = capacity;
     return 0;
 }
 
-static sim_time air_time(const struct radio *radio, size_t length)
+static void free_frame(struct radio *radio, uint32_t frame)
 {
-    const double air_s = 8.0 * (double)(length + RADIO_HEADER_BYTES) / radio->config.bitrate_bps;
-    return (sim_time)llround(air_s * SIM_TIME_PER_S);
+    radio->frames[frame].next = radio->free_frame;
+    radio->free_frame = frame;
 }
 
 int radio_send(struct radio *radio, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *bytes,
                size_t length, uint8_t cause)
 {
-    if (radio->free_count == 0 && grow(radio)) {
+    if (radio->free_frame == NONE && grow_frames(radio)) {
         return -1;
     }
-    const uint32_t flight = radio->free_flights[--radio->free_count];
-    struct radio_frame *frame = &radio->flights[flight];
-    frame->number = radio->sent++;
-    frame->sender = sender;
-    frame->destination = destination;
-    frame->cause = cause;
-    frame->length = (uint8_t)length;
+    const uint32_t index = radio->free_frame;
+    struct radio_frame *frame = &radio->frames[index];
+    radio->free_frame = frame->next;
+    *frame = (struct radio_frame){
+        .sender = sender, .destination = destination, .next = NONE, .cause = cause, .length = (uint8_t)length};
     memcpy(frame->bytes, bytes, length);
-    const sim_time begins = time > radio->free_from[sender] ? time : radio->free_from[sender];
-    radio->free_from[sender] = begins + air_time(radio, length);
-    return event_queue_push(&radio->queue, begins, EVENT(EVENT_BEGIN, flight));
+    return event_queue_push(&radio->events, time, EVENT(EVENT_FRAME, index));
 }
 
 int radio_power(struct radio *radio, sim_time time, uint32_t mote, enum radio_power power)
 {
-    return event_queue_push(&radio->queue, time, EVENT(EVENT_POWER, mote << 2 | power));
+    return event_queue_push(&radio->events, time, EVENT(EVENT_POWER_ON + (uint32_t)power, mote));
 }
 
-static bool hears(const struct radio *radio, const struct radio_place *sender, const struct radio_place *receiver)
+sim_time radio_next(const struct radio *radio) { return event_queue_next(&radio->events); }
+
+const uint32_t *radio_order(const struct radio *radio) { return radio->places.position; }
+
+/* One radio_run: what its steps need. */
+struct run {
+    struct radio *radio;
+    const struct radio_sink *sink;
+    sim_time now;
+};
+
+/* ---- states ---- */
+
+static bool listens(const struct radio_mote *mote)
 {
-    const double dx = receiver->x_m - sender->x_m, dy = receiver->y_m - sender->y_m;
-    return dx * dx + dy * dy <= radio->config.range_m * radio->config.range_m;
+    return mote->power == RADIO_POWER_ON || (mote->power == RADIO_POWER_ASLEEP && (mote->mac || mote->ack));
 }
 
-static bool gets_through(struct radio *radio, const struct radio_frame *frame, uint32_t receiver)
+static void show(const struct run *run, uint32_t index, uint8_t cause)
 {
-    enum loss_reason reason;
-    if (radio->power[receiver] != RADIO_POWER_ON) {
-        reason = radio->power[receiver] == RADIO_POWER_OFF ? LOSS_DEAD : LOSS_ASLEEP;
-    } else if (radio->config.loss > 0 &&
-               random_uniform(radio->loss_stream, frame->number * radio->count + receiver) < radio->config.loss) {
-        reason = LOSS_RANDOM;
-    } else {
-        radio->received++;
-        return true;
+    struct radio_mote *mote = &run->radio->motes[index];
+    if (!run->sink->state) {
+        return;
     }
-    radio->lost[reason]++;
-    return false;
+    const enum radio_state state = mote->power == RADIO_POWER_OFF                         ? RADIO_OFF
+                                   : mote->mac == MAC_SENDING || mote->ack == ACK_SENDING ? RADIO_TRANSMIT
+                                   : !listens(mote)                                       ? RADIO_SLEEP
+                                   : mote->signals > 0                                    ? RADIO_RECEIVE
+                                                                                          : RADIO_LISTEN;
+    if (state != mote->shown) {
+        mote->shown = (uint8_t)state;
+        run->sink->state(run->sink->context, run->now, index, state, cause);
+    }
 }
 
-static uint32_t receivers_in_range(struct radio *radio, const struct radio_frame *frame)
+static void enter(const struct run *run, uint32_t index, enum mac_state state, uint8_t cause)
 {
-    const struct radio_place sender = radio->sorted[radio->position[frame->sender]];
-    const double range = radio->config.range_m;
-    const size_t first_column = column_of(radio, sender.x_m - range),
-                 last_column = column_of(radio, sender.x_m + range);
-    const size_t last_row = row_of(radio, sender.y_m + range);
+    struct radio_mote *mote = &run->radio->motes[index];
+    if (!listens(mote)) {
+        mote->awake = run->now;
+    }
+    mote->mac = (uint8_t)state;
+    show(run, index, cause);
+}
+
+static void enter_ack(const struct run *run, uint32_t index, enum ack_state state)
+{
+    struct radio_mote *mote = &run->radio->motes[index];
+    if (!listens(mote)) {
+        mote->awake = run->now;
+    }
+    mote->ack = (uint8_t)state;
+    show(run, index, mote->ack_cause);
+}
+
+/* ---- who is in reach ---- */
+
+static int ascending(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Who receives `sender` when nothing disturbs: into radio->found, ascending. Returns their number. */
+static uint32_t look_up_receivers(const struct radio *radio, uint32_t sender)
+{
+    const size_t near = places_within(&radio->places, sender, radio->reach_m, radio->found);
+    const struct place *place = places_at(&radio->places, sender);
     uint32_t count = 0;
-    for (size_t row = row_of(radio, sender.y_m - range); row <= last_row; row++) {
-        const size_t *starts = &radio->cell_start[row * radio->columns];
-        for (size_t at = starts[first_column]; at < starts[last_column + 1]; at++) {
-            const struct radio_place *place = &radio->sorted[at];
-            if (place->index != frame->sender && hears(radio, &sender, place) &&
-                gets_through(radio, frame, place->index)) {
-                radio->receivers[count++] = place->index;
-            }
+    for (size_t i = 0; i < near; i++) {
+        const uint32_t index = radio->found[i];
+        if (propagation_power(&radio->propagation, place, places_at(&radio->places, index)) >= radio->sensitivity) {
+            radio->found[count++] = index;
         }
     }
+    qsort(radio->found, count, sizeof *radio->found, ascending);
     return count;
 }
 
-static uint32_t addressee_in_range(struct radio *radio, const struct radio_frame *frame)
+static const uint32_t *receivers_of(struct radio *radio, uint32_t sender, uint32_t *count)
 {
-    const struct radio_place *places = radio->sorted;
-    if (!hears(radio, &places[radio->position[frame->sender]], &places[radio->position[frame->destination]])) {
-        radio->lost[LOSS_RANGE]++;
-        return 0;
+    struct radio_receivers *list = radio->receivers[sender];
+    if (list) {
+        *count = list->count;
+        return list->mote;
     }
-    radio->receivers[0] = frame->destination;
-    return gets_through(radio, frame, frame->destination);
+    *count = look_up_receivers(radio, sender);
+    if (*count <= LISTED_MAX && (list = malloc(sizeof *list + *count * sizeof *list->mote)) != NULL) {
+        list->count = *count;
+        memcpy(list->mote, radio->found, *count * sizeof *list->mote);
+        radio->receivers[sender] = list;
+        return list->mote;
+    }
+    return radio->found;
 }
 
-static void free_flight(struct radio *radio, uint32_t flight) { radio->free_flights[radio->free_count++] = flight; }
-
-static int begin(struct radio *radio, sim_time time, uint32_t flight, const struct radio_sink *sink)
+static double power_between(const struct radio *radio, uint32_t a, uint32_t b)
 {
-    const struct radio_frame *frame = &radio->flights[flight];
-    if (radio->power[frame->sender] == RADIO_POWER_OFF) {
-        free_flight(radio, flight);
-        return 0;
-    }
-    sink->on_air(sink->context, time, frame->sender, frame->destination, frame->bytes, frame->length);
-    if (sink->state) {
-        sink->state(sink->context, time, frame->sender, RADIO_TRANSMIT, frame->cause);
-    }
-    return event_queue_push(&radio->queue, time + air_time(radio, frame->length), EVENT(EVENT_LAND, flight));
+    return propagation_power(&radio->propagation, places_at(&radio->places, a), places_at(&radio->places, b));
 }
 
-static enum radio_state at_rest(const struct radio *radio, uint32_t mote)
+/* All that may hear a transmission begin or cease to receive it. */
+static void show_signal(const struct run *run, uint32_t sender, uint8_t cause, int change)
 {
-    static const enum radio_state states[] = {RADIO_LISTEN, RADIO_SLEEP, RADIO_OFF};
-    return states[radio->power[mote]];
-}
-
-static void land(struct radio *radio, sim_time time, uint32_t flight, const struct radio_sink *sink)
-{
-    const struct radio_frame *frame = &radio->flights[flight];
-    const bool to_all = frame->destination == RADIO_ALL;
-    free_flight(radio, flight);
-    if (radio->power[frame->sender] == RADIO_POWER_OFF) {
-        return; /* cut off in the middle */
+    if (!run->sink->state) {
+        return;
     }
-    const uint32_t count = to_all ? receivers_in_range(radio, frame) : addressee_in_range(radio, frame);
-    if (sink->state) {
-        sink->state(sink->context, time, frame->sender, at_rest(radio, frame->sender), 0);
-    }
-    if (count > 0) {
-        sink->heard(sink->context, time, frame->bytes, frame->length, radio->receivers, count);
-    }
-    sink->sent(sink->context, time, frame->sender, to_all || count > 0 ? MH_SENT_OK : MH_SENT_NO_ACK);
-}
-
-static void switch_power(struct radio *radio, sim_time time, uint32_t mote, uint8_t power,
-                         const struct radio_sink *sink)
-{
-    radio->power[mote] = power;
-    if (sink->state) {
-        sink->state(sink->context, time, mote, at_rest(radio, mote), 0);
+    uint32_t count;
+    const uint32_t *receivers = receivers_of(run->radio, sender, &count);
+    for (uint32_t i = 0; i < count; i++) {
+        struct radio_mote *mote = &run->radio->motes[receivers[i]];
+        mote->signals = (uint16_t)(mote->signals + change);
+        show(run, receivers[i], cause);
     }
 }
 
-sim_time radio_next(const struct radio *radio) { return event_queue_next(&radio->queue); }
+/* ---- the air ---- */
+
+/* Average power at a mote since `from`, or HUGE_VAL if it has itself been sending. */
+static double energy(const struct run *run, uint32_t mote, sim_time from)
+{
+    struct radio *radio = run->radio;
+    uint32_t found[MEETINGS_MAX];
+    const struct place *place = places_at(&radio->places, mote);
+    size_t count = air_find(&radio->air, place, from, run->now, found, MEETINGS_MAX);
+    count = count < MEETINGS_MAX ? count : MEETINGS_MAX;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct flight *flight = &radio->air.flights[found[i]];
+        if (flight->sender == mote) {
+            return HUGE_VAL;
+        }
+        const sim_time start = flight->start > from ? flight->start : from;
+        const sim_time end = flight->end < run->now ? flight->end : run->now;
+        sum += power_between(radio, flight->sender, mote) * (double)(end - start);
+    }
+    return sum / (double)(run->now - from);
+}
+
+/* Transmissions that one has met. */
+struct meetings {
+    size_t count;
+    struct flight flight[MEETINGS_MAX];
+};
+
+static void find_meetings(const struct run *run, const struct flight *flight, uint32_t itself,
+                          struct meetings *meetings)
+{
+    struct radio *radio = run->radio;
+    uint32_t found[MEETINGS_MAX];
+    const sim_time turnaround = rounded(radio->config.profile.turnaround_us);
+    const sim_time from = flight->start > turnaround ? flight->start - turnaround : 0;
+    const struct place *place = places_at(&radio->places, flight->sender);
+    size_t count = air_find(&radio->air, place, from, run->now, found, MEETINGS_MAX);
+    count = count < MEETINGS_MAX ? count : MEETINGS_MAX;
+    meetings->count = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (found[i] != itself) {
+            meetings->flight[meetings->count++] = radio->air.flights[found[i]];
+        }
+    }
+}
+
+/* Interference is largest when some disturbing transmission has just begun. */
+static bool drowns(const struct radio *radio, const struct flight *flight, uint32_t receiver,
+                   const struct meetings *meetings)
+{
+    double power[MEETINGS_MAX];
+    double sum = 0;
+    for (size_t i = 0; i < meetings->count; i++) {
+        const struct flight *other = &meetings->flight[i];
+        power[i] = other->end > flight->start ? power_between(radio, other->sender, receiver) : 0;
+        power[i] = power[i] < radio->disturbance ? 0 : power[i];
+        sum += power[i];
+    }
+    if (!(sum > 0)) {
+        return false;
+    }
+    const double bearable = power_between(radio, flight->sender, receiver) / radio->capture - radio->noise;
+    for (size_t i = 0; i < meetings->count && sum > bearable; i++) {
+        const sim_time start = meetings->flight[i].start;
+        const sim_time instant = start > flight->start ? start : flight->start;
+        double interference = 0;
+        for (size_t j = 0; j < meetings->count; j++) {
+            const struct flight *other = &meetings->flight[j];
+            interference += other->start <= instant && instant < other->end ? power[j] : 0;
+        }
+        if (interference > bearable) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The receiver has been sending, is about to, or has not turned round in time. */
+static bool was_deaf(const struct radio *radio, uint32_t receiver, const struct meetings *meetings)
+{
+    if (radio->motes[receiver].mac == MAC_TURNING) {
+        return true;
+    }
+    for (size_t i = 0; i < meetings->count; i++) {
+        if (meetings->flight[i].sender == receiver) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What a receiver in range makes of a transmission: LOSS_NONE if it has it. */
+static enum loss_reason judge(const struct run *run, const struct flight *flight, uint32_t receiver,
+                              const struct meetings *meetings)
+{
+    struct radio *radio = run->radio;
+    const struct radio_mote *mote = &radio->motes[receiver];
+    if (mote->power == RADIO_POWER_OFF || flight->cut) {
+        return LOSS_DEAD;
+    }
+    if (!listens(mote) || mote->awake > flight->start) {
+        return LOSS_ASLEEP;
+    }
+    if (meetings) {
+        if (was_deaf(radio, receiver, meetings)) {
+            return LOSS_DEAF;
+        }
+        if (meetings->count > 0 && drowns(radio, flight, receiver, meetings)) {
+            return LOSS_COLLISION;
+        }
+    }
+    const struct passage passage = {flight->number, flight->start, run->now, places_at(&radio->places, flight->sender),
+                                    places_at(&radio->places, receiver)};
+    return channel_verdict(&radio->channel, &passage);
+}
+
+/* The end of a frame: who has received it is told. Returns whether the addressee has. */
+static bool deliver(const struct run *run, const struct flight *flight, const struct meetings *meetings)
+{
+    struct radio *radio = run->radio;
+    const struct radio_frame frame = radio->frames[flight->frame]; /* the sink may send, which may move the frames */
+    uint32_t count = 1;
+    const uint32_t *receivers = &flight->destination;
+    if (flight->destination == RADIO_ALL) {
+        receivers = receivers_of(radio, flight->sender, &count);
+    } else if (flight->destination == flight->sender ||
+               power_between(radio, flight->sender, flight->destination) < radio->sensitivity) {
+        radio->counters.lost[LOSS_RANGE]++;
+        return false;
+    }
+    uint32_t received = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const enum loss_reason reason = judge(run, flight, receivers[i], meetings);
+        if (reason == LOSS_NONE) {
+            radio->found[received++] = receivers[i];
+        } else {
+            radio->counters.lost[reason]++;
+        }
+    }
+    radio->counters.frames_received += received;
+    if (received > 0 && run->sink->heard) {
+        run->sink->heard(run->sink->context, run->now, frame.bytes, frame.length, radio->found, received);
+    }
+    return received > 0;
+}
+
+/* ---- one mote's way to the air ---- */
+
+static void count_lost(const struct run *run, enum loss_reason reason) { run->radio->counters.lost[reason]++; }
+
+static void tell_sent(const struct run *run, uint32_t sender, enum mh_sent outcome)
+{
+    if (run->sink->sent) {
+        run->sink->sent(run->sink->context, run->now, sender, outcome);
+    }
+}
+
+static void pop(struct radio *radio, struct radio_mote *mote)
+{
+    const uint32_t frame = mote->first;
+    mote->first = radio->frames[frame].next;
+    mote->last = mote->first == NONE ? NONE : mote->last;
+    mote->queued -= !radio->frames[frame].refused;
+    free_frame(radio, frame);
+}
+
+static void back_off(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    struct radio_mote *mote = &radio->motes[index];
+    mote->due = run->now + csma_wait(&mote->csma, &radio->config.profile, radio->backoff_stream, index);
+    push(radio, mote->due, EVENT(EVENT_ASSESSED, index));
+    enter(run, index, MAC_BACKOFF, radio->frames[mote->first].cause);
+}
+
+/* Take up the next frame, if there is one; those that were refused get their answer in their turn. */
+static void next_frame(const struct run *run, uint32_t index, uint8_t cause)
+{
+    struct radio *radio = run->radio;
+    struct radio_mote *mote = &radio->motes[index];
+    while (mote->first != NONE && radio->frames[mote->first].refused) {
+        pop(radio, mote);
+        tell_sent(run, index, MH_SENT_BUSY);
+    }
+    if (mote->first == NONE) {
+        enter(run, index, MAC_IDLE, cause);
+        return;
+    }
+    csma_begin(&mote->csma);
+    back_off(run, index);
+}
+
+static void finish(const struct run *run, uint32_t index, enum mh_sent outcome)
+{
+    struct radio_mote *mote = &run->radio->motes[index];
+    const uint8_t cause = run->radio->frames[mote->first].cause;
+    pop(run->radio, mote);
+    tell_sent(run, index, outcome);
+    next_frame(run, index, cause);
+}
+
+static void busy(const struct run *run, uint32_t index)
+{
+    if (csma_was_busy(&run->radio->motes[index].csma, &run->radio->config.profile)) {
+        back_off(run, index);
+    } else {
+        count_lost(run, LOSS_BUSY);
+        finish(run, index, MH_SENT_BUSY);
+    }
+}
+
+/* False: the event is out of date. */
+static bool waits(const struct run *run, uint32_t index, enum mac_state state)
+{
+    const struct radio_mote *mote = &run->radio->motes[index];
+    return mote->mac == state && mote->due == run->now;
+}
+
+static void assessed(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    struct radio_mote *mote = &radio->motes[index];
+    const struct radio_profile *profile = &radio->config.profile;
+    if (!waits(run, index, MAC_BACKOFF)) {
+        return;
+    }
+    if (mote->ack != ACK_NONE || energy(run, index, run->now - rounded(profile->cca_us)) >= radio->cca_threshold) {
+        busy(run, index);
+        return;
+    }
+    mote->due = run->now + rounded(profile->turnaround_us);
+    push(radio, mote->due, EVENT(EVENT_START, index));
+    enter(run, index, MAC_TURNING, radio->frames[mote->first].cause);
+}
+
+static void launch(const struct run *run, uint32_t sender, uint32_t destination, uint32_t frame, size_t bytes,
+                   uint8_t cause)
+{
+    struct radio *radio = run->radio;
+    const struct flight flight = {.start = run->now,
+                                  .end = run->now + radio_profile_air_us(&radio->config.profile, bytes),
+                                  .number = radio->transmissions++,
+                                  .sender = sender,
+                                  .destination = destination,
+                                  .frame = frame,
+                                  .cause = cause};
+    uint32_t index;
+    if (air_put(&radio->air, &flight, &index)) {
+        radio->out_of_memory = true;
+        return;
+    }
+    radio->motes[sender].flight = index;
+    push(radio, flight.end, EVENT(EVENT_END, index));
+    show_signal(run, sender, cause, 1);
+}
+
+static void announce(const struct run *run, const struct radio_frame *frame)
+{
+    run->radio->counters.frames_sent++;
+    if (run->sink->on_air) {
+        const struct radio_frame copy = *frame;
+        run->sink->on_air(run->sink->context, run->now, copy.sender, copy.destination, copy.bytes, copy.length);
+    }
+}
+
+static size_t bytes_on_air(const struct radio *radio, const struct radio_frame *frame)
+{
+    return radio->config.profile.preamble_bytes + radio->config.profile.header_bytes + frame->length;
+}
+
+static void start(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    struct radio_mote *mote = &radio->motes[index];
+    if (!waits(run, index, MAC_TURNING)) {
+        return;
+    }
+    if (mote->ack != ACK_NONE) {
+        busy(run, index);
+        return;
+    }
+    const struct radio_frame *frame = &radio->frames[mote->first];
+    radio->counters.frames_repeated += mote->csma.tries > 0;
+    enter(run, index, MAC_SENDING, frame->cause);
+    launch(run, index, frame->destination, mote->first, bytes_on_air(radio, frame), frame->cause);
+    announce(run, frame);
+}
+
+static void frame_ends(const struct run *run, const struct flight *flight, const struct meetings *meetings)
+{
+    struct radio *radio = run->radio;
+    const struct radio_profile *profile = &radio->config.profile;
+    const bool received = deliver(run, flight, meetings);
+    struct radio_mote *sender = &radio->motes[flight->sender];
+    if (received && flight->destination != RADIO_ALL) {
+        struct radio_mote *receiver = &radio->motes[flight->destination];
+        receiver->ack_to = flight->sender;
+        receiver->ack_cause = flight->cause;
+        enter_ack(run, flight->destination, ACK_TURNING);
+        push(radio, run->now + rounded(profile->ack_turnaround_us), EVENT(EVENT_ACK_START, flight->destination));
+    }
+    if (flight->cut) {
+        free_frame(radio, flight->frame);
+    } else if (flight->destination == RADIO_ALL) {
+        finish(run, flight->sender, MH_SENT_OK);
+    } else {
+        sender->due = run->now + rounded(profile->ack_wait_us);
+        push(radio, sender->due, EVENT(EVENT_NO_ACK, flight->sender));
+        enter(run, flight->sender, MAC_WAITING, flight->cause);
+    }
+}
+
+static void ack_starts(const struct run *run, uint32_t index)
+{
+    struct radio_mote *mote = &run->radio->motes[index];
+    if (mote->ack != ACK_TURNING) {
+        return;
+    }
+    enter_ack(run, index, ACK_SENDING);
+    run->radio->counters.acks_sent++;
+    launch(run, index, mote->ack_to, AIR_NO_FRAME, run->radio->config.profile.ack_bytes, mote->ack_cause);
+}
+
+static void ack_ends(const struct run *run, const struct flight *flight, const struct meetings *meetings)
+{
+    struct radio *radio = run->radio;
+    if (!flight->cut) {
+        enter_ack(run, flight->sender, ACK_NONE);
+    }
+    const struct radio_mote *waiting = &radio->motes[flight->destination];
+    const bool expected = waiting->mac == MAC_WAITING && radio->frames[waiting->first].destination == flight->sender;
+    if (expected && judge(run, flight, flight->destination, meetings) == LOSS_NONE) {
+        finish(run, flight->destination, MH_SENT_OK);
+    } else {
+        radio->counters.acks_lost++;
+    }
+}
+
+static void flight_ends(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    const struct flight flight = radio->air.flights[index];
+    struct meetings meetings;
+    find_meetings(run, &flight, index, &meetings);
+    show_signal(run, flight.sender, flight.cause, -1);
+    if (!flight.cut) {
+        radio->motes[flight.sender].flight = NONE;
+    }
+    if (flight.frame == AIR_NO_FRAME) {
+        ack_ends(run, &flight, &meetings);
+    } else {
+        frame_ends(run, &flight, &meetings);
+    }
+}
+
+static void no_ack(const struct run *run, uint32_t index)
+{
+    if (!waits(run, index, MAC_WAITING)) {
+        return;
+    }
+    if (csma_not_acknowledged(&run->radio->motes[index].csma, &run->radio->config.profile)) {
+        back_off(run, index);
+    } else {
+        count_lost(run, LOSS_NO_ACK);
+        finish(run, index, MH_SENT_NO_ACK);
+    }
+}
+
+/* ---- without contention ---- */
+
+static sim_time air_time(const struct radio *radio, const struct radio_frame *frame)
+{
+    return radio_profile_air_us(&radio->config.profile, bytes_on_air(radio, frame));
+}
+
+/* A radio sends one frame at a time; `due` is when it has sent all that it was given so far. */
+static void line_up(const struct run *run, uint32_t index)
+{
+    const struct radio_frame *frame = &run->radio->frames[index];
+    struct radio_mote *sender = &run->radio->motes[frame->sender];
+    const sim_time begin = sender->due > run->now ? sender->due : run->now;
+    sender->due = begin + air_time(run->radio, frame);
+    push(run->radio, begin, EVENT(EVENT_TAKE_OFF, index));
+}
+
+static void take_off(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    const struct radio_frame *frame = &radio->frames[index];
+    if (radio->motes[frame->sender].power == RADIO_POWER_OFF) {
+        free_frame(radio, index);
+        return;
+    }
+    push(radio, run->now + air_time(radio, frame), EVENT(EVENT_LANDING, index));
+    enter(run, frame->sender, MAC_SENDING, frame->cause);
+    show_signal(run, frame->sender, frame->cause, 1);
+    announce(run, frame);
+}
+
+static void land(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    const struct radio_frame *frame = &radio->frames[index];
+    const struct flight flight = {.start = run->now -
+                                           radio_profile_air_us(&radio->config.profile, bytes_on_air(radio, frame)),
+                                  .end = run->now,
+                                  .number = radio->transmissions++,
+                                  .sender = frame->sender,
+                                  .destination = frame->destination,
+                                  .frame = index,
+                                  .cause = frame->cause,
+                                  .cut = radio->motes[frame->sender].power == RADIO_POWER_OFF};
+    const bool received = deliver(run, &flight, NULL);
+    free_frame(radio, index);
+    show_signal(run, flight.sender, flight.cause, -1);
+    if (!flight.cut) {
+        enter(run, flight.sender, MAC_IDLE, flight.cause);
+        if (flight.destination != RADIO_ALL && !received) {
+            count_lost(run, LOSS_NO_ACK);
+        }
+        tell_sent(run, flight.sender, flight.destination == RADIO_ALL || received ? MH_SENT_OK : MH_SENT_NO_ACK);
+    }
+}
+
+/* ---- a radio gets a frame, or is switched ---- */
+
+static void frame_comes(const struct run *run, uint32_t index)
+{
+    struct radio *radio = run->radio;
+    struct radio_frame *frame = &radio->frames[index];
+    struct radio_mote *mote = &radio->motes[frame->sender];
+    if (mote->power == RADIO_POWER_OFF) {
+        free_frame(radio, index);
+        return;
+    }
+    if (!radio->config.profile.contention) {
+        line_up(run, index);
+        return;
+    }
+    frame->refused = mote->queued >= radio->config.queue;
+    mote->queued += !frame->refused;
+    radio->counters.lost[LOSS_QUEUE] += frame->refused;
+    if (mote->last == NONE) {
+        mote->first = index;
+    } else {
+        radio->frames[mote->last].next = index;
+    }
+    mote->last = index;
+    if (mote->mac == MAC_IDLE) {
+        next_frame(run, frame->sender, frame->cause);
+    }
+}
+
+/* A frame that is in the air goes on as a wreck: it disturbs, but nobody receives it. */
+static void drop_all(struct radio *radio, struct radio_mote *mote)
+{
+    if (mote->flight != NONE) {
+        struct flight *flight = &radio->air.flights[mote->flight];
+        flight->cut = true;
+        mote->flight = NONE;
+        if (flight->frame != AIR_NO_FRAME) {
+            mote->first = radio->frames[mote->first].next; /* freed where it ends */
+        }
+    }
+    while (mote->first != NONE) {
+        pop(radio, mote);
+    }
+    mote->last = NONE;
+    mote->queued = 0;
+    mote->mac = MAC_IDLE;
+    mote->ack = ACK_NONE;
+}
+
+static void switch_power(const struct run *run, uint32_t index, enum radio_power power)
+{
+    struct radio_mote *mote = &run->radio->motes[index];
+    const bool listened = listens(mote);
+    if (power == RADIO_POWER_OFF) {
+        drop_all(run->radio, mote);
+    }
+    mote->power = (uint8_t)power;
+    if (!listened && listens(mote)) {
+        mote->awake = run->now;
+    }
+    show(run, index, 0);
+}
+
+static void happen(const struct run *run, uint32_t content)
+{
+    const uint32_t index = content & ((UINT32_C(1) << 28) - 1);
+    switch (content >> 28) {
+    case EVENT_FRAME:
+        frame_comes(run, index);
+        break;
+    case EVENT_TAKE_OFF:
+        take_off(run, index);
+        break;
+    case EVENT_LANDING:
+        land(run, index);
+        break;
+    case EVENT_ASSESSED:
+        assessed(run, index);
+        break;
+    case EVENT_START:
+        start(run, index);
+        break;
+    case EVENT_END:
+        flight_ends(run, index);
+        break;
+    case EVENT_NO_ACK:
+        no_ack(run, index);
+        break;
+    case EVENT_ACK_START:
+        ack_starts(run, index);
+        break;
+    default:
+        switch_power(run, index, (enum radio_power)((content >> 28) - EVENT_POWER_ON));
+    }
+}
 
 int radio_run(struct radio *radio, sim_time until, const struct radio_sink *sink)
 {
-    int result = 0;
     struct event event;
-    while (result == 0 && event_queue_next(&radio->queue) < until && event_queue_pop(&radio->queue, &event)) {
-        const uint32_t index = event.content & UINT32_C(0x3FFFFFFF);
-        switch (event.content >> 30) {
-        case EVENT_BEGIN:
-            result = begin(radio, event.time, index, sink);
-            break;
-        case EVENT_LAND:
-            land(radio, event.time, index, sink);
-            break;
-        case EVENT_POWER:
-            switch_power(radio, event.time, index >> 2, index & 3, sink);
-            break;
-        default:
-            break;
-        }
+    struct run run = {.radio = radio, .sink = sink, .now = radio->now};
+    while (!radio->out_of_memory && event_queue_next(&radio->events) < until &&
+           event_queue_pop(&radio->events, &event)) {
+        run.now = event.time > run.now ? event.time : run.now;
+        happen(&run, event.content);
     }
-    return result;
+    radio->now = run.now;
+    return radio->out_of_memory ? -1 : 0;
 }
-
-const uint32_t *radio_order(const struct radio *radio) { return radio->position; }

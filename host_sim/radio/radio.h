@@ -1,107 +1,123 @@
 /* The radio: who hears a frame, and when.
  *
- * A unit disc: every node within range hears a broadcast, the addressee alone is handed a unicast. Each receiver loses a frame
- * independently, nothing collides, and whether a unicast got through its sender knows when it has landed. A mote's radio sends one frame at a
- * time; the others wait.
+ * A mote hands its radio frames, which wait in a queue. The radio listens before it sends (csma.h), and a receiver makes of what arrives
+ * (propagation.h) what signal, noise and interference allow:
  *
- * Receivers are found through a grid of cells, so a frame costs time in the nodes about its range, not in the network's size. */
+ *   a frame is received if it arrives at least as strong as the sensitivity, its receiver listened from its first bit to its last without
+ *   sending, at no instant noise plus all interference exceeded signal / capture ratio, and the channel (channel.h) lets it pass.
+ *
+ * Each frame is judged so by itself: of two that overlap the stronger one is received if it is stronger by the capture ratio, whichever came
+ * first. Transmissions that arrive more than 10 dB below the noise floor are not felt. A frame sent to one is acknowledged and repeated if the
+ * acknowledgement does not come, also if it was the acknowledgement that was lost: then the addressee hears the frame twice.
+ * Profile `ideal` knows none of this: a frame goes out at once and all in range hear it; one that is sent to one needs no
+ * acknowledgement, and a radio's frames follow each other without a gap.
+ *
+ * Receivers are found through a grid of cells and kept per sender, those who disturb through another grid: a frame costs time in
+ * those about it, not in the network's size. Memory: 48 bytes a mote, 4 for each of a sender's receivers, 48 for the grid. */
 #ifndef MOTEHOUND_SIM_RADIO_H
 #define MOTEHOUND_SIM_RADIO_H
 
 #include "engine/event_queue.h"
 #include "engine/random.h"
-#include "motehound/config.h"
 #include "motehound/protocol.h"
+#include "radio/air.h"
+#include "radio/channel.h"
+#include "radio/csma.h"
+#include "radio/places.h"
+#include "radio/profile.h"
+#include "radio/propagation.h"
+#include "scenario/scenario.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* Preamble, start of frame and length of IEEE 802.15.4, sent before every frame. */
-#define RADIO_HEADER_BYTES 6
-
 #define RADIO_ALL UINT32_MAX
 
-enum radio_state { RADIO_SLEEP, RADIO_LISTEN, RADIO_RECEIVE, RADIO_TRANSMIT, RADIO_OFF };
-
-/* On: it listens whenever it does not send. Asleep: it only sends. */
-enum radio_power { RADIO_POWER_ON, RADIO_POWER_ASLEEP, RADIO_POWER_OFF };
-
-/* Why a receiver, or the addressee, did not get a frame. */
-enum loss_reason { LOSS_RANDOM, LOSS_RANGE, LOSS_ASLEEP, LOSS_DEAD, LOSS_REASONS };
-
 struct radio_config {
-    double range_m; /* HUGE_VAL: all hear all */
-    double bitrate_bps, loss;
+    struct radio_profile profile;
+    struct propagation_config propagation;
+    double loss;    /* probability that a receiver loses a frame */
+    unsigned queue; /* frames a radio holds, the one being sent included; further ones are refused */
 };
 
-/* What the radio tells, in order of time. Bytes and receivers are valid during the call. The functions may not call the radio. */
+/* What scenario->radio says; `range_m` stands in for its range. HUGE_VAL: all hear all, whatever the propagation. */
+struct radio_config radio_config_of(const struct scenario *scenario, double range_m);
+
+/* What a radio does; draws power accordingly. */
+enum radio_state { RADIO_SLEEP, RADIO_LISTEN, RADIO_RECEIVE, RADIO_TRANSMIT, RADIO_OFF };
+
+/* What a mote asks of its radio. Asleep it does not hear, but wakes to send and goes back to sleep; what is off drops all it had. */
+enum radio_power { RADIO_POWER_ON, RADIO_POWER_ASLEEP, RADIO_POWER_OFF };
+
+/* Who is told, in order of time. Any of the functions may be NULL. bytes and receivers are valid during the call. */
 struct radio_sink {
     void *context;
-    /* The sender begins to transmit. */
+    /* The first bit of a frame, at each of its transmissions. */
     void (*on_air)(void *context, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *bytes,
                    size_t length);
-    /* All of `receivers`, each once, have heard the frame to its end. */
+    /* The last bit has arrived at all these, at least one, ascending. */
     void (*heard)(void *context, sim_time time, const uint8_t *bytes, size_t length, const uint32_t *receivers,
                   uint32_t count);
-    /* What became of the sender's oldest frame of which this has not been told; of one that it was given while off, nothing. */
+    /* What became of a frame: once for each, a sender's in the order of sending, but for those of a radio that was switched off. */
     void (*sent)(void *context, sim_time time, uint32_t sender, enum mh_sent outcome);
-    /* The radio of a mote has changed its state. `cause` is the frame's, as given to radio_send; 0 without one. May be NULL. */
+    /* A radio changes its state, for a frame of that cause. Before the first call all listen. A radio receives while the
+     * signal of any frame is above its sensitivity, whoever it is for. */
     void (*state)(void *context, sim_time time, uint32_t mote, enum radio_state state, uint8_t cause);
 };
 
-struct radio_frame {
-    uint64_t number;              /* of the transmission, from 0 */
-    uint32_t sender, destination; /* index of a place, or RADIO_ALL */
-    uint8_t cause, length, bytes[MH_FRAME_MAX];
-};
-
-/* A place, kept in the order of the cells. */
-struct radio_place {
-    double x_m, y_m;
-    uint32_t index;
+struct radio_counters {
+    uint64_t frames_sent;     /* transmissions, repetitions included */
+    uint64_t frames_repeated; /* of those */
+    uint64_t frames_received; /* once per receiver */
+    uint64_t acks_sent, acks_lost;
+    uint64_t lost[LOSS_REASONS];
 };
 
 struct radio {
     struct radio_config config;
-    struct random_stream loss_stream;
-    size_t count;
-    struct radio_place *sorted;
-    uint32_t *position; /* of place i in `sorted` */
-    double x_min_m, y_min_m, cell_m;
-    size_t columns, rows;
-    size_t *cell_start;       /* columns x rows + 1 */
-    struct event_queue queue; /* begin and end of flights, changes of power */
-    struct radio_frame *flights;
-    uint32_t *free_flights;
-    size_t flights_capacity, free_count;
-    sim_time *free_from;                         /* of each mote: when it has sent all that it was given so far */
-    uint8_t *power;                              /* of each mote: enum radio_power */
-    uint32_t *receivers;                         /* of the frame that is landing */
-    uint64_t sent, received, lost[LOSS_REASONS]; /* received and lost: once per receiver */
+    struct propagation propagation;
+    struct channel channel;
+    struct radio_counters counters;
+    struct random_stream backoff_stream;
+    struct places places;
+    struct air air;
+    struct event_queue events;
+    double sensitivity, noise, capture, cca_threshold, disturbance; /* powers as of propagation.h, and the ratio */
+    double reach_m;                                                 /* how far a frame may be received */
+    struct radio_mote *motes;
+    struct radio_receivers **receivers; /* of each mote, once it has sent to all */
+    struct radio_frame *frames;         /* waiting or being sent */
+    uint32_t frames_capacity, free_frame;
+    uint32_t *found; /* room for all motes */
+    uint64_t transmissions;
+    sim_time now;
+    bool out_of_memory;
 };
 
-/* Places 0 ... count - 1, at most 2^28; each finite. All radios are on. Returns 0, or -1 if there is no memory (nothing to free). */
+/* Radios at places 0 ... count - 1, each finite; all on, from time 0. Returns 0, or -1 if there is no memory (nothing to
+ * free). */
 int radio_make(struct radio *radio, const struct radio_config *config, const double *x_m, const double *y_m,
                size_t count, uint64_t seed);
 
 void radio_free(struct radio *radio);
 
-/* Hand `sender`'s radio a frame of at most MH_FRAME_MAX bytes at `time`, not before the time that radio_run has come to. Returns 0,
- * or -1 if there is no memory. */
+/* At `time` the radio of `sender` gets a frame of at most MH_FRAME_MAX bytes for `destination` (an index, or RADIO_ALL). `cause` comes back with the
+ * states. Returns 0, or -1 if there is no memory. */
 int radio_send(struct radio *radio, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *bytes,
                size_t length, uint8_t cause);
 
-/* Switch `mote`'s radio at `time`, not before the time that radio_run has come to. Returns as radio_send. */
+/* At `time` the radio of `mote` is switched. Returns 0, or -1 if there is no memory. */
 int radio_power(struct radio *radio, sim_time time, uint32_t mote, enum radio_power power);
 
-/* When the next event is; SIM_TIME_NEVER if there is none. */
+/* An order of the radios in which those that hear each other lie side by side: radio i is at number radio_order()[i]. */
+const uint32_t *radio_order(const struct radio *radio);
+
+/* When something happens next; SIM_TIME_NEVER: nothing does. */
 sim_time radio_next(const struct radio *radio);
 
-/* Let everything happen that happens before `until`. Returns 0, or -1 if there is no memory. */
+/* Let everything happen that happens before `until`. What is sent or switched during the calls of `sink`, or later, for a
+ * time that is already past, happens at once. Returns 0, or -1 if there is no memory. */
 int radio_run(struct radio *radio, sim_time until, const struct radio_sink *sink);
-
-/* The places in an order in which those that hear each other lie side by side: place i is at number radio_order()[i]. */
-const uint32_t *radio_order(const struct radio *radio);
 
 #endif

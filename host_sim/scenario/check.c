@@ -1,4 +1,5 @@
 /* What only holds between the keys of a scenario. */
+#include "radio/profile.h"
 #include "scenario/keys.h"
 #include "scenario/text.h"
 
@@ -45,8 +46,8 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
     }
     if ((scenario->source.path == PATH_STILL || scenario->source.path == PATH_NONE) &&
         scenario->source.duration_s <= 0) {
-        return fail(error, error_size, "%s: source.duration_s: expected more than 0 for a still source or none, found 0",
-                    name);
+        return fail(error, error_size,
+                    "%s: source.duration_s: expected more than 0 for a still source or none, found 0", name);
     }
     const double run_s = duration(scenario);
     if (!(run_s > 0) || run_s > RUN_MAX_S) {
@@ -79,6 +80,16 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
     if (scenario->network.sink_y_m < 0 || scenario->network.sink_y_m > scenario->field.height_m) {
         return fail(error, error_size, "%s: network.sink_y_m: expected a number 0 to field.height_m = %g, found %g",
                     name, scenario->field.height_m, scenario->network.sink_y_m);
+    }
+    const double loudest_dbm = scenario->radio.power_dbm - scenario->radio.reference_loss_db;
+    const double sensitivity_dbm = scenario->radio.sensitivity_dbm < 0
+                                       ? scenario->radio.sensitivity_dbm
+                                       : radio_profile_find(scenario->radio.profile)->sensitivity_dbm;
+    if (scenario->radio.propagation == PROPAGATION_LOG_DISTANCE && sensitivity_dbm >= loudest_dbm) {
+        return fail(
+            error, error_size,
+            "%s: radio.sensitivity_dbm: expected less than radio.power_dbm - radio.reference_loss_db = %g, found %g",
+            name, loudest_dbm, sensitivity_dbm);
     }
     if (scenario->sweep.key[0] != '\0' &&
         (scenario_key_find(scenario->sweep.key) == NULL || strncmp(scenario->sweep.key, "sweep.", 6) == 0 ||

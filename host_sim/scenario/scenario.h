@@ -22,6 +22,8 @@ struct waypoint {
     double speed_factor; /* of the leg that ends here, times source.speed_mps; ignored for the first point */
 };
 
+enum propagation_kind { PROPAGATION_DISC, PROPAGATION_LOG_DISTANCE };
+
 enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_FILE };
 
 struct scenario {
@@ -67,37 +69,14 @@ struct scenario {
         double delay_s;     /* of one hop, besides the air time */
         double bitrate_bps; /* gives the air time */
         double loss;        /* probability that a frame is lost, each receiver independently */
+        char *profile;      /* ideal, 802154 or cc1000 */
+        enum propagation_kind propagation;
+        double path_loss_exponent, reference_loss_db; /* of the path; loss at 1 m */
+        double shadowing_db;                          /* standard deviation */
+        double power_dbm, sensitivity_dbm;            /* sensitivity 0: the profile's */
+        int64_t retries, backoffs;                    /* -1: the profile's */
+        int64_t queue;                                /* frames a radio holds */
     } radio;
-    struct {
-        double every_s; /* all faults come again with this period, and then hit other motes; 0: once */
-        struct {
-            double share, from_s, for_s; /* share of the motes, from when on, for how long; so below */
-        } stuck;
-        struct {
-            double share, from_s, for_s, chance, height; /* of a reading; g/m2 */
-        } spike;
-        struct {
-            double share, from_s, for_s, at; /* g/m2 */
-        } saturate;
-        struct {
-            double share, from_s, for_s, offset; /* g/m2 */
-        } bias;
-        struct {
-            double share, from_s;
-        } dead;
-        struct {
-            double share, from_s, for_s;
-        } reboot;
-        struct {
-            double from_s, for_s, x_m, y_m, angle_rad; /* the line through (x, y) */
-        } partition;
-        struct {
-            double from_s, for_s;
-        } mute;
-        struct {
-            double from_s, for_s, x_m, y_m, radius_m;
-        } jam;
-    } faults;
     struct {
         char *name; /* diffusion, luo or range */
         double diffusion_m2ps;

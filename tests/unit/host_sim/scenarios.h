@@ -22,7 +22,7 @@ static inline struct scenario e1(void)
                    .diffusion_m2ps = 1},
         .network = {.nodes = 1280, .layout = LAYOUT_UNIFORM, .sink_x_m = 40, .sink_y_m = 40, .protocol = collection},
         .sensor = {.interval_s = 1, .full_scale = 64},
-        .radio = {.range_m = 15, .delay_s = 0.002, .bitrate_bps = 250000},
+        .radio = {.range_m = 15, .delay_s = 0.002, .bitrate_bps = 250000, .profile = "ideal", .queue = 8},
         .tracker = {.name = luo,
                     .diffusion_m2ps = 1,
                     .chi = 0.2,

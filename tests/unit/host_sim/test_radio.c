@@ -22,6 +22,13 @@ static struct heard {
 void setUp(void) { radio = (struct radio){0}; }
 void tearDown(void) { radio_free(&radio); }
 
+static struct radio_config ideal(double range_m, double loss)
+{
+    return (struct radio_config){.profile = *radio_profile_find("ideal"),
+                                 .propagation = {.kind = PROPAGATION_DISC, .range_m = range_m},
+                                 .loss = loss};
+}
+
 static void scatter(double width, double height)
 {
     const struct random_stream stream = random_stream(9, RANDOM_DEPLOYMENT);
@@ -83,14 +90,14 @@ static void broadcast_reaches_those_in_range_and_nobody_else(void)
                                        {1000, 1, 20},  {1, 1000, 3},    {0, 0, 1}};
     for (unsigned s = 0; s < sizeof shapes / sizeof shapes[0]; s++) {
         scatter(shapes[s][0], shapes[s][1]);
-        const struct radio_config config = {shapes[s][2], 250000, 0};
+        const struct radio_config config = ideal(shapes[s][2], 0);
         TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
         for (uint32_t sender = 0; sender < PLACES; sender++) {
             send(sender, RADIO_ALL);
             TEST_ASSERT_FALSE(heard.damaged);
             for (uint32_t i = 0; i < PLACES; i++) {
                 const double dx = x_m[i] - x_m[sender], dy = y_m[i] - y_m[sender];
-                const bool in_range = dx * dx + dy * dy <= config.range_m * config.range_m;
+                const bool in_range = dx * dx + dy * dy <= shapes[s][2] * shapes[s][2];
                 TEST_ASSERT_EQUAL_UINT(i != sender && in_range, heard.times[i]);
             }
         }
@@ -101,7 +108,7 @@ static void broadcast_reaches_those_in_range_and_nobody_else(void)
 static void without_a_limit_all_hear_all(void)
 {
     scatter(100, 100);
-    const struct radio_config config = {HUGE_VAL, 250000, 0};
+    const struct radio_config config = ideal(HUGE_VAL, 0);
     TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
     send(5, RADIO_ALL);
     TEST_ASSERT_EQUAL_UINT(PLACES - 1, heard.total);
@@ -110,7 +117,7 @@ static void without_a_limit_all_hear_all(void)
 static void unicast_is_handed_to_its_addressee_if_in_range(void)
 {
     scatter(100, 100);
-    const struct radio_config config = {15, 250000, 0};
+    const struct radio_config config = ideal(15, 0);
     TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
     for (uint32_t to = 1; to < PLACES; to++) {
         send(0, to);
@@ -119,14 +126,15 @@ static void unicast_is_handed_to_its_addressee_if_in_range(void)
         TEST_ASSERT_EQUAL_UINT(in_range, heard.times[to]);
         TEST_ASSERT_EQUAL_UINT(1, heard.outcomes[in_range ? MH_SENT_OK : MH_SENT_NO_ACK]);
     }
-    TEST_ASSERT_TRUE(radio.sent == PLACES - 1 && radio.received + radio.lost[LOSS_RANGE] == PLACES - 1 &&
-                     radio.received > 0);
+    TEST_ASSERT_TRUE(radio.counters.frames_sent == PLACES - 1 &&
+                     radio.counters.frames_received + radio.counters.lost[LOSS_RANGE] == PLACES - 1 &&
+                     radio.counters.frames_received > 0);
 }
 
 static void takes_its_air_time_one_after_the_other(void)
 {
-    const struct radio_config config = {15, 250000, 0};
-    const sim_time air = (sizeof bytes + RADIO_HEADER_BYTES) * 32;
+    const struct radio_config config = ideal(15, 0);
+    const sim_time air = (sizeof bytes + 6) * 32;
     scatter(1, 1);
     TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, PLACES, 1));
     TEST_ASSERT_TRUE(radio_next(&radio) == SIM_TIME_NEVER);
@@ -144,14 +152,14 @@ static void takes_its_air_time_one_after_the_other(void)
 
 static void only_radios_that_are_on_hear(void)
 {
-    const struct radio_config config = {15, 250000, 0};
+    const struct radio_config config = ideal(15, 0);
     scatter(1, 1);
     TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, 4, 1));
     TEST_ASSERT_EQUAL_INT(0, radio_power(&radio, 1, 1, RADIO_POWER_ASLEEP));
     TEST_ASSERT_EQUAL_INT(0, radio_power(&radio, 1, 2, RADIO_POWER_OFF));
     send(0, RADIO_ALL);
     TEST_ASSERT_TRUE(heard.total == 1 && heard.times[3] == 1);
-    TEST_ASSERT_TRUE(radio.lost[LOSS_ASLEEP] == 1 && radio.lost[LOSS_DEAD] == 1);
+    TEST_ASSERT_TRUE(radio.counters.lost[LOSS_ASLEEP] == 1 && radio.counters.lost[LOSS_DEAD] == 1);
     send(0, 2);
     TEST_ASSERT_EQUAL_UINT(1, heard.outcomes[MH_SENT_NO_ACK]);
     send(1, RADIO_ALL);
@@ -164,7 +172,7 @@ static void only_radios_that_are_on_hear(void)
 static void loss_is_independent(void)
 {
     enum { FRAMES = 20000 };
-    const struct radio_config config = {HUGE_VAL, 250000, 0.3};
+    const struct radio_config config = ideal(HUGE_VAL, 0.3);
     scatter(1, 1);
     TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, 3, 1));
     unsigned first = 0, second = 0, both = 0;
@@ -178,7 +186,8 @@ static void loss_is_independent(void)
     TEST_ASSERT_TRUE(fabs(first - 0.3 * FRAMES) < 4 * sd);
     TEST_ASSERT_TRUE(fabs(second - 0.3 * FRAMES) < 4 * sd);
     TEST_ASSERT_TRUE(fabs(both - 0.09 * FRAMES) < 4 * sqrt(FRAMES * 0.09 * 0.91));
-    TEST_ASSERT_TRUE(radio.lost[LOSS_RANDOM] == first + second && radio.received == 2 * FRAMES - first - second);
+    TEST_ASSERT_TRUE(radio.counters.lost[LOSS_RANDOM] == first + second &&
+                     radio.counters.frames_received == 2 * FRAMES - first - second);
 }
 
 int main(void)
