@@ -304,7 +304,7 @@ int network_make(struct network *network, const struct network_config *config, c
     *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
     learn_fingerprints(network);
     if (make_radio(network) ||
-        host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->protocol.protocol) ||
+        host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->kit.protocol.protocol) ||
         bring_up(network)) {
         snprintf(error, error_size, "out of memory for %u nodes", (unsigned)roster->count);
         network_free(network);

@@ -180,18 +180,20 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
         .instant = work,
         .report = report,
     };
-    if (tracker_choose(scenario, NULL, &roster->tracker, error, error_size) ||
-        protocol_choose("direct", scenario, &roster->protocol, error, error_size) ||
+    struct mote_kit *kit = &roster->kit;
+    if (tracker_choose(scenario, NULL, &kit->tracker, error, error_size) ||
+        protocol_choose("direct", scenario, &kit->protocol, error, error_size) ||
         find_motes(replay, error, error_size)) {
         return -1;
     }
-    roster->sensor = (struct mh_sensor_config){.q20_per_count = 1,
-                                               .counts_min = INT32_MIN,
-                                               .counts_max = INT32_MAX,
-                                               .interval = replay->interval,
-                                               .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
-                                               .report_always = roster->tracker.measures == QUANTITY_RANGE};
-    if (roster_complete(roster, scenario, (mh_tick)(replay->lead + phase), error, error_size)) {
+    kit->sensor = (struct mh_sensor_config){.q20_per_count = 1,
+                                            .counts_min = INT32_MIN,
+                                            .counts_max = INT32_MAX,
+                                            .interval = replay->interval,
+                                            .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
+                                            .report_always = kit->tracker.measures == QUANTITY_RANGE};
+    mote_kit_complete(kit, scenario, (mh_tick)(replay->lead + phase));
+    if (roster_complete(roster, scenario, error, error_size)) {
         return -1;
     }
     if (network_make(&replay->network, &config, error, error_size)) {

@@ -10,24 +10,36 @@
 #include "trackers.h"
 #include "world/deployment.h"
 
-/* Points into itself: not to be copied or moved once it is made. */
-struct roster {
-    struct deployment deployment;
-    double sink_x_m, sink_y_m;
+/* What all motes of a run have in common. Points into itself: not to be copied or moved once it is complete. */
+struct mote_kit {
     struct mh_sensor_config sensor;
     struct tracker_choice tracker;
     struct protocol_choice protocol;
     struct mh_head_config head;
+};
+
+struct roster {
+    struct mote_kit kit;
+    struct deployment deployment;
+    double sink_x_m, sink_y_m;
     uint32_t count; /* of motes, the sink included */
     mh_node_id sink_id;
 };
 
+/* The kit of a simulated run of `scenario`. Returns 0, or -1 with one line in `error`. */
+int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *error, size_t error_size);
+
+/* Complete the kit where the caller has filled in sensor, tracker and protocol; `epoch` is a sampling instant. */
+void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh_tick epoch);
+
+/* Mote `id` at `place`: the head, or a node with a sensor. It points into the kit. */
+struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_head);
+
 /* The motes of `scenario` run with `seed`. Returns 0, or -1 with one line in `error`; roster_free it in any case. */
 int roster_make(struct roster *roster, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size);
 
-/* The same where the caller has filled in deployment, sensor, tracker and protocol; `epoch` is a sampling instant. */
-int roster_complete(struct roster *roster, const struct scenario *scenario, mh_tick epoch, char *error,
-                    size_t error_size);
+/* The same where the caller has filled in the deployment and the kit. */
+int roster_complete(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size);
 
 void roster_free(struct roster *roster);
 

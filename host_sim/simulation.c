@@ -80,7 +80,7 @@ static int sample_one(void *context)
 static int make_world(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
     const size_t nodes = run->roster.deployment.count;
-    run->interval = (sim_time)run->roster.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
+    run->interval = (sim_time)run->roster.kit.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     if (scenario->source.path == PATH_NONE) {
         run->end = (sim_time)(scenario->source.duration_s * SIM_TIME_PER_S);
         return traffic_make(&run->traffic, (size_t)scenario->traffic.sources, nodes, run->interval, seed);

@@ -16,6 +16,8 @@ enum random_purpose {
     RANDOM_RADIO_LOSS,
     RANDOM_CLOCK,
     RANDOM_TRAFFIC,
+    RANDOM_FAULTS, /* whom they hit */
+    RANDOM_SPIKES,
     RANDOM_RADIO_BACKOFF,
     RANDOM_RADIO_SHADOWING
 };

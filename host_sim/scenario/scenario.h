@@ -78,6 +78,36 @@ struct scenario {
         int64_t queue;                                /* frames a radio holds */
     } radio;
     struct {
+        double every_s; /* all faults come again with this period, and then hit other motes; 0: once */
+        struct {
+            double share, from_s, for_s; /* share of the motes, from when on, for how long; so below */
+        } stuck;
+        struct {
+            double share, from_s, for_s, chance, height; /* of a reading; g/m2 */
+        } spike;
+        struct {
+            double share, from_s, for_s, at; /* g/m2 */
+        } saturate;
+        struct {
+            double share, from_s, for_s, offset; /* g/m2 */
+        } bias;
+        struct {
+            double share, from_s;
+        } dead;
+        struct {
+            double share, from_s, for_s;
+        } reboot;
+        struct {
+            double from_s, for_s, x_m, y_m, angle_rad; /* the line through (x, y) */
+        } partition;
+        struct {
+            double from_s, for_s;
+        } mute;
+        struct {
+            double from_s, for_s, x_m, y_m, radius_m;
+        } jam;
+    } faults;
+    struct {
         char *name; /* diffusion, luo or range */
         double diffusion_m2ps;
         double chi;

@@ -28,20 +28,72 @@ int sensors_make(struct sensors *sensors, const struct scenario *scenario, uint6
                                 .loss = scenario->sensor.loss,
                                 .outage_start_s = scenario->sensor.outage_start_s,
                                 .outage_end_s = scenario->sensor.outage_start_s + scenario->sensor.outage_s,
+                                .interval_s = config.interval / (double)MH_TICKS_PER_S,
+                                .spike_chance = scenario->faults.spike.chance,
+                                .spike = scenario->faults.spike.height,
+                                .saturate_at = scenario->faults.saturate.at,
+                                .bias = scenario->faults.bias.offset,
                                 .relative_stream = random_stream(seed, RANDOM_RELATIVE_NOISE),
                                 .additive_stream = random_stream(seed, RANDOM_ADDITIVE_NOISE),
                                 .loss_stream = random_stream(seed, RANDOM_READING_LOSS),
+                                .spike_stream = random_stream(seed, RANDOM_SPIKES),
                                 .noise = malloc((count + 1) * sizeof *sensors->noise)};
-    return sensors->noise ? 0 : -1;
+    faults_make(&sensors->faults, scenario, seed);
+    const bool sticks = faults_include(&sensors->faults, FAULT_STUCK);
+    sensors->last = sticks ? calloc(count + 1, sizeof *sensors->last) : NULL;
+    if (!sensors->noise || (sticks && !sensors->last)) {
+        sensors_free(sensors);
+        return -1;
+    }
+    return 0;
 }
 
 void sensors_free(struct sensors *sensors)
 {
     free(sensors->noise);
+    free(sensors->last);
     *sensors = (struct sensors){0};
 }
 
-void sensors_read(const struct sensors *sensors, uint64_t instant, double *concentrations, int32_t *counts)
+/* What faults make of the readings before it is converted. */
+static void distort(const struct sensors *sensors, uint64_t instant, double time_s, double *concentrations)
+{
+    const struct faults *faults = &sensors->faults;
+    if (faults_are_on(faults, FAULT_BIAS, time_s)) {
+        for (size_t i = 0; i < sensors->count; i++) {
+            concentrations[i] += faults_hit(faults, FAULT_BIAS, time_s, (uint32_t)i) ? sensors->bias : 0;
+        }
+    }
+    if (faults_are_on(faults, FAULT_SPIKE, time_s)) {
+        for (size_t i = 0; i < sensors->count; i++) {
+            const double draw = random_uniform(sensors->spike_stream, instant * sensors->count + i);
+            concentrations[i] += draw < sensors->spike_chance && faults_hit(faults, FAULT_SPIKE, time_s, (uint32_t)i)
+                                     ? sensors->spike
+                                     : 0;
+        }
+    }
+    if (faults_are_on(faults, FAULT_SATURATE, time_s)) {
+        for (size_t i = 0; i < sensors->count; i++) {
+            if (faults_hit(faults, FAULT_SATURATE, time_s, (uint32_t)i)) {
+                concentrations[i] = fmin(concentrations[i], sensors->saturate_at);
+            }
+        }
+    }
+}
+
+/* Sensors that stick repeat their last reading. */
+static void stick(struct sensors *sensors, double time_s, int32_t *counts)
+{
+    const bool on = faults_are_on(&sensors->faults, FAULT_STUCK, time_s);
+    for (size_t i = 0; i < sensors->count; i++) {
+        if (on && faults_hit(&sensors->faults, FAULT_STUCK, time_s, (uint32_t)i)) {
+            counts[i] = sensors->last[i];
+        }
+        sensors->last[i] = counts[i];
+    }
+}
+
+void sensors_read(struct sensors *sensors, uint64_t instant, double *concentrations, int32_t *counts)
 {
     const size_t count = sensors->count;
     if (sensors->relative_noise > 0) {
@@ -56,8 +108,13 @@ void sensors_read(const struct sensors *sensors, uint64_t instant, double *conce
             concentrations[i] += sensors->additive_noise * sensors->noise[i];
         }
     }
+    const double time_s = (double)instant * sensors->interval_s;
+    distort(sensors, instant, time_s, concentrations);
     for (size_t i = 0; i < count; i++) {
         counts[i] = (int32_t)lround(fmin(fmax(concentrations[i] * sensors->counts_per_unit, 0), sensors->counts_max));
+    }
+    if (sensors->last) {
+        stick(sensors, time_s, counts);
     }
 }
 

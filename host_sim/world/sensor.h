@@ -1,10 +1,11 @@
-/* What the nodes' sensors make of the field: noise, the converter, readings that never come. */
+/* What the nodes' sensors make of the field: noise, the converter, readings that never come, and what is wrong with some of them. */
 #ifndef MOTEHOUND_SIM_WORLD_SENSOR_H
 #define MOTEHOUND_SIM_WORLD_SENSOR_H
 
 #include "engine/random.h"
 #include "motehound/sensor.h"
 #include "scenario/scenario.h"
+#include "world/faults.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -20,8 +21,12 @@ struct sensors {
     double relative_noise, additive_noise;
     double counts_per_unit, counts_max;
     double loss, outage_start_s, outage_end_s;
-    struct random_stream relative_stream, additive_stream, loss_stream;
+    double interval_s;
+    struct faults faults;
+    double spike_chance, spike, saturate_at, bias;
+    struct random_stream relative_stream, additive_stream, loss_stream, spike_stream;
     double *noise; /* one row of normals */
+    int32_t *last; /* what each sensor read last; NULL if none ever sticks */
 };
 
 /* The sensors of `count` nodes. Returns 0, or -1 if there is no memory (nothing to free). */
@@ -30,8 +35,9 @@ int sensors_make(struct sensors *sensors, const struct scenario *scenario, uint6
 void sensors_free(struct sensors *sensors);
 
 /* concentrations[i] of node i at instant number `instant` -> counts[i]: C (1 + relative g1) + additive g2, clipped at 0 and at the
- * converter's last count, rounded. g1 and g2 are number (instant x count + i) of their streams. Overwrites concentrations. */
-void sensors_read(const struct sensors *sensors, uint64_t instant, double *concentrations, int32_t *counts);
+ * converter's last count, rounded. g1 and g2 are number (instant x count + i) of their streams. A fault adds its bias or spike before that,
+ * saturates before the converter does, sticks after it. Overwrites concentrations. Instants in ascending order. */
+void sensors_read(struct sensors *sensors, uint64_t instant, double *concentrations, int32_t *counts);
 
 /* The reading of `node` at instant number `instant`, which is at `time_s`, never comes. */
 bool sensors_lost(const struct sensors *sensors, uint64_t instant, double time_s, size_t node);

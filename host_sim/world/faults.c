@@ -1,0 +1,54 @@
+#include "world/faults.h"
+
+#include <math.h>
+
+void faults_make(struct faults *faults, const struct scenario *scenario, uint64_t seed)
+{
+    *faults = (struct faults){.every_s = scenario->faults.every_s, .stream = random_stream(seed, RANDOM_FAULTS)};
+    const struct {
+        double share, from_s, for_s;
+    } given[FAULTS] = {
+        [FAULT_STUCK] = {scenario->faults.stuck.share, scenario->faults.stuck.from_s, scenario->faults.stuck.for_s},
+        [FAULT_SPIKE] = {scenario->faults.spike.share, scenario->faults.spike.from_s, scenario->faults.spike.for_s},
+        [FAULT_SATURATE] = {scenario->faults.saturate.share, scenario->faults.saturate.from_s,
+                            scenario->faults.saturate.for_s},
+        [FAULT_BIAS] = {scenario->faults.bias.share, scenario->faults.bias.from_s, scenario->faults.bias.for_s},
+        [FAULT_DEAD] = {scenario->faults.dead.share, scenario->faults.dead.from_s, HUGE_VAL},
+        [FAULT_REBOOT] = {scenario->faults.reboot.share, scenario->faults.reboot.from_s, scenario->faults.reboot.for_s},
+        [FAULT_PARTITION] = {1, scenario->faults.partition.from_s, scenario->faults.partition.for_s},
+        [FAULT_MUTE] = {1, scenario->faults.mute.from_s, scenario->faults.mute.for_s},
+        [FAULT_JAM] = {1, scenario->faults.jam.from_s, scenario->faults.jam.for_s},
+    };
+    for (int i = 0; i < FAULTS; i++) {
+        faults->windows[i].share = given[i].share;
+        faults->windows[i].from_s = given[i].from_s;
+        faults->windows[i].until_s = given[i].from_s + given[i].for_s;
+    }
+}
+
+bool faults_include(const struct faults *faults, enum fault fault)
+{
+    return faults->windows[fault].share > 0 && faults->windows[fault].until_s > faults->windows[fault].from_s;
+}
+
+/* How many periods are over. */
+static double periods(const struct faults *faults, double time_s)
+{
+    return faults->every_s > 0 ? floor(time_s / faults->every_s) : 0;
+}
+
+bool faults_are_on(const struct faults *faults, enum fault fault, double time_s)
+{
+    const double since_s = time_s - periods(faults, time_s) * faults->every_s;
+    return faults_include(faults, fault) && since_s >= faults->windows[fault].from_s &&
+           since_s < faults->windows[fault].until_s;
+}
+
+bool faults_hit(const struct faults *faults, enum fault fault, double time_s, uint32_t mote)
+{
+    if (!faults_are_on(faults, fault, time_s)) {
+        return false;
+    }
+    const uint64_t draw = (uint64_t)periods(faults, time_s) * FAULTS + (uint64_t)fault;
+    return random_uniform(faults->stream, draw << 32 | mote) < faults->windows[fault].share;
+}
