@@ -83,6 +83,19 @@
 #define MH_ROUTE_HOPS_MAX 1024
 #endif
 
+/* Synchronised time: pairs of local and network time that the line goes through, 8 bytes each, one a round; and neighbours whose messages are
+ * stamped, 9 bytes each. */
+#ifndef MH_CLOCK_PAIRS
+#ifdef __AVR__
+#define MH_CLOCK_PAIRS 16
+#else
+#define MH_CLOCK_PAIRS 24
+#endif
+#endif
+#ifndef MH_CLOCK_NEIGHBOURS
+#define MH_CLOCK_NEIGHBOURS 8
+#endif
+
 /* Largest number of states of a Kalman filter. A filter costs 4 (n + n (n + 1) / 2) bytes, whatever part of it is used. */
 #ifndef MH_KALMAN_STATES_MAX
 #define MH_KALMAN_STATES_MAX 4
@@ -117,6 +130,9 @@
 #endif
 #if MH_ROUTE_HOPS_MAX < 1 || MH_ROUTE_HOPS_MAX > 32767
 #error "MH_ROUTE_HOPS_MAX must be 1 to 32767: it travels as 16 bits with a sign"
+#endif
+#if MH_CLOCK_PAIRS < 2 || MH_CLOCK_PAIRS > 32 || MH_CLOCK_NEIGHBOURS < 1 || MH_CLOCK_NEIGHBOURS > 250
+#error "MH_CLOCK_PAIRS must be 2 to 32, MH_CLOCK_NEIGHBOURS 1 to 250: a line needs two pairs, and its sums have room for 32"
 #endif
 #if MH_KALMAN_STATES_MAX < 4 || MH_KALMAN_STATES_MAX > 16
 #error                                                                                                                 \

@@ -12,6 +12,9 @@ struct mh_head_config {
     mh_tick epoch;              /* a sampling instant; the others are whole intervals from it */
     mh_tick interval;           /* between sampling instants, 1 to 3,600,000 */
     mh_tick window;             /* measurements are waited for this long after their instant; below interval */
+    /* A measurement taken this much before or after an instant, below interval / 2, is taken for one of the instant, its time set to it: where
+     * each mote samples by its own idea of the network's time. 0: times are exact. */
+    mh_tick tolerance;
 };
 
 struct mh_head_counters {
@@ -36,8 +39,8 @@ struct mh_head {
  * range), or what the tracker's init returns. */
 enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *config, mh_tick now);
 
-/* Take one measurement. It belongs to the first instant at or after the time it was taken; one of the instant after the one
- * being gathered is kept for it. Cost: O(MH_REPORTS_MAX).
+/* Take one measurement. It belongs to the instant within the tolerance of the time it was taken, else to the first after it; one of the
+ * instant after the one being gathered is kept for it. Cost: O(MH_REPORTS_MAX).
  * Errors, each counted: MH_ERR_TIME (its instant is closed, or is not yet the next), MH_ERR_REPEATED (same node, target and
  * instant), MH_ERR_CAPACITY (one gave way, this or another: the smallest increment, of equal ones the largest node
  * number, so that what is kept does not depend on the order of arrival). */

@@ -2,10 +2,17 @@
  *
  * Its owner feeds it four events, a reading, a frame, the fate of a frame sent and an alarm, each with the time; it answers through struct
  * mh_port. It reads no clock, owns no thread, allocates nothing and touches no global, so the same compiled code runs on a board, in
- * a test and as one of many thousands inside the simulator. Not re-entrant for one mote; different motes are independent. */
+ * a test and as one of many thousands inside the simulator. Not re-entrant for one mote; different motes are independent.
+ *
+ * Its owner and it speak of the mote's own time, as its clock shows it. With a `clock` in its configuration the mote keeps the network's
+ * time besides, and all that is compared between motes is in it: samples and measurements, requests, the head's instants, estimates. Waits
+ * and timers, the protocol's too, stay in the mote's own time, which no correction disturbs. When the network time becomes known or
+ * jumps, the sensor's history and the head begin anew; a mote that does not know it yet refuses readings, closes no instant,
+ * but relays. Such a mote listens all the time, whatever its protocol needs. */
 #ifndef MOTEHOUND_MOTE_H
 #define MOTEHOUND_MOTE_H
 
+#include "motehound/clock.h"
 #include "motehound/head.h"
 #include "motehound/protocol.h"
 #include "motehound/sensor.h"
@@ -31,24 +38,28 @@ struct mh_mote_config {
     const struct mh_head_config *head;     /* NULL on a mote that does not compute */
     const struct mh_protocol *protocol;
     const void *protocol_config;
-    void *protocol_state;       /* protocol->state_size bytes */
-    struct mh_head *head_state; /* with head */
+    void *protocol_state;                /* protocol->state_size bytes */
+    struct mh_head *head_state;          /* with head */
+    const struct mh_clock_config *clock; /* NULL: the mote's own time is the network's */
+    struct mh_clock *clock_state;        /* with clock */
 };
 
 struct mh_mote_counters {
     uint32_t readings;         /* taken */
     uint32_t readings_refused; /* out of range, out of time */
     uint32_t readings_repeated;
-    uint32_t reports;          /* measurements handed to the protocol ... */
-    uint32_t reports_asked;    /* ... of these, only because a head asked */
-    uint32_t reports_no_route; /* ... of these, lost for want of a next hop */
+    uint32_t readings_unsynchronised; /* refused because the network's time was not known yet */
+    uint32_t reports;                 /* measurements handed to the protocol ... */
+    uint32_t reports_asked;           /* ... of these, only because a head asked */
+    uint32_t reports_no_route;        /* ... of these, lost for want of a next hop */
     uint32_t frames_sent;
     uint32_t frames_received; /* sound ones */
     uint32_t frames_corrupt;
     uint32_t frames_unknown;
 };
 
-/* Memory of a sensor node: sizeof(struct mh_mote) + protocol->state_size, at most 256 bytes on an ATmega128. */
+/* Memory of a sensor node: sizeof(struct mh_mote) + protocol->state_size, at most 256 bytes on an ATmega128 with the protocol
+ * `collection`; with a clock sizeof(struct mh_clock) more. */
 struct mh_mote {
     const struct mh_mote_config *config;
     const struct mh_port *port;
@@ -61,7 +72,7 @@ struct mh_mote {
     mh_tick protocol_alarm;  /* when the protocol's timer() is due ... */
     bool protocol_alarm_set; /* ... if it is */
     mh_tick alarm;           /* as last told to the port ... */
-    bool alarm_set;          /* ... if ever: the earlier of the protocol's and the head's */
+    bool alarm_set;          /* ... if ever: the earliest of the protocol's, the clock's and the head's */
     bool may_sleep;          /* as last told to the port */
     struct mh_mote_counters counters;
 };
@@ -72,7 +83,7 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
                             void *port_context, mh_tick now);
 
 /* The sensor has sampled, at reading->time, at or before `now`. Reports the sample if it is worth it or asked for.
- * Errors: those of mh_sensor_take, MH_ERR_TIME also for a reading from the future (each counted; the mote goes on),
+ * Errors: those of mh_sensor_take, MH_ERR_TIME also for a reading from the future or before the network's time is known (each counted; the mote goes on),
  * MH_ERR_ARGUMENT (no sensor). */
 enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct mh_reading *reading);
 

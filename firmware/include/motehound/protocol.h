@@ -1,7 +1,10 @@
 /* A protocol answers "who finds out?": it carries measurements to the node that computes, and that node's requests back.
  * It knows nothing of how a position is computed.
  *
- * Like a tracker it is one table of functions over a state that its owner allocates. */
+ * Like a tracker it is one table of functions over a state that its owner allocates.
+ *
+ * `now` and timers are in the mote's own time, which runs evenly. The times in measurements and requests, and of the instants that ask and
+ * asked speak of, are the network's (clock.h): compare them with each other, not with `now`. */
 #ifndef MOTEHOUND_PROTOCOL_H
 #define MOTEHOUND_PROTOCOL_H
 

@@ -16,6 +16,7 @@
 #include "mh_landmark_t.h"
 #include "mh_report_t.h"
 #include "mh_request_t.h"
+#include "mh_sync_t.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -28,6 +29,7 @@ enum mh_message_kind {
     MH_MESSAGE_REQUEST,
     MH_MESSAGE_HELLO,
     MH_MESSAGE_LANDMARK,
+    MH_MESSAGE_SYNC,
     MH_MESSAGE_KINDS
 };
 
@@ -41,6 +43,7 @@ struct mh_message {
         mh_request_t request;
         mh_hello_t hello;
         mh_landmark_t landmark;
+        mh_sync_t sync;
     } as;
     enum mh_envelope_kind envelope;
     mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */

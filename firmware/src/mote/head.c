@@ -47,7 +47,8 @@ static void remove_at(struct mh_head *head, uint16_t at)
 enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *config, mh_tick now)
 {
     if (!head || !config || !config->tracker || !config->tracker_config || !config->tracker_state ||
-        config->interval < 1 || config->interval > 3600000u || config->window >= config->interval) {
+        config->interval < 1 || config->interval > 3600000u || config->window >= config->interval ||
+        config->tolerance > (config->interval - 1) / 2) {
         return MH_ERR_ARGUMENT;
     }
     const enum mh_status status =
@@ -64,8 +65,25 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
     return MH_OK;
 }
 
-enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *measurement)
+/* `time`, or the instant within the tolerance of it: the one before, the one being gathered or the next. */
+static mh_tick instant_near(const struct mh_head *head, mh_tick time)
 {
+    const int32_t tolerance = (int32_t)head->config->tolerance, interval = (int32_t)head->config->interval;
+    for (int32_t ahead = -interval; ahead <= interval; ahead += interval) {
+        const mh_tick instant = head->instant + (mh_tick)ahead;
+        const int32_t off = mh_ticks_between(instant, time);
+        if (off >= -tolerance && off <= tolerance) {
+            return instant;
+        }
+    }
+    return time;
+}
+
+enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *given)
+{
+    struct mh_measurement timed = *given;
+    const struct mh_measurement *measurement = &timed;
+    timed.time = instant_near(head, given->time);
     const int32_t interval = (int32_t)head->config->interval;
     const int32_t ahead = mh_ticks_between(head->instant, measurement->time);
     if (ahead <= -interval) {

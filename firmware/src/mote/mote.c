@@ -4,20 +4,52 @@
 
 static void *protocol_state(const struct mh_mote *mote) { return mote->config->protocol_state; }
 
-/* One alarm of the port serves the protocol's timer and the head's deadline. The port hears of it when it changes, and after
- * an alarm, which has used it up. */
+/* ---- the network's time and this mote's own ---- */
+
+static bool knows_time(const struct mh_mote *mote)
+{
+    return !mote->config->clock || mh_clock_synchronised(mote->config->clock_state);
+}
+
+static mh_tick network_time(const struct mh_mote *mote, mh_tick own)
+{
+    return mote->config->clock ? mh_clock_network(mote->config->clock_state, own, NULL) : own;
+}
+
+static mh_tick own_time(const struct mh_mote *mote, mh_tick network)
+{
+    return mote->config->clock ? mh_clock_local(mote->config->clock_state, network) : network;
+}
+
+/* ---- the alarm ---- */
+
+struct earliest {
+    bool wanted;
+    mh_tick time;
+};
+
+static void want(struct earliest *alarm, mh_tick time)
+{
+    if (!alarm->wanted || mh_tick_before(time, alarm->time)) {
+        alarm->time = time;
+    }
+    alarm->wanted = true;
+}
+
+/* One alarm of the port serves the protocol's timer, the clock's and the head's deadline, which moves with the network's time. The
+ * port hears of it when it changes, and after an alarm, which has used it up. */
 static void set_alarm(struct mh_mote *mote, bool used_up)
 {
-    bool wanted = mote->protocol_alarm_set;
-    mh_tick next = mote->protocol_alarm;
-    if (mote->config->head) {
-        const mh_tick deadline = mh_head_deadline(mote->config->head_state);
-        if (!wanted || mh_tick_before(deadline, next)) {
-            next = deadline;
-        }
-        wanted = true;
+    struct earliest alarm = {mote->protocol_alarm_set, mote->protocol_alarm};
+    mh_tick time;
+    if (mote->config->clock && mh_clock_due(mote->config->clock_state, &time)) {
+        want(&alarm, time);
     }
-    if (wanted && (used_up || !mote->alarm_set || mote->alarm != next)) {
+    if (mote->config->head && knows_time(mote)) {
+        want(&alarm, own_time(mote, mh_head_deadline(mote->config->head_state)));
+    }
+    const mh_tick next = alarm.time;
+    if (alarm.wanted && (used_up || !mote->alarm_set || mote->alarm != next)) {
         mote->alarm = next;
         mote->alarm_set = true;
         mote->port->set_alarm(mote->port_context, next);
@@ -46,17 +78,25 @@ static void report(struct mh_mote *mote, mh_tick now, const struct mh_sample *sa
     mh_sensor_mark_reported(&mote->sensor, sample);
 }
 
-/* ---- what the protocol asks of the mote ---- */
-
-static void protocol_send(void *context, mh_node_id destination, const struct mh_message *message)
+static void transmit(struct mh_mote *mote, mh_node_id destination, const struct mh_message *message)
 {
-    struct mh_mote *mote = context;
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
     if (mh_wire_encode(message, frame, &length) == MH_OK) {
         mote->counters.frames_sent++;
         mote->port->transmit(mote->port_context, destination, frame, length);
     }
+}
+
+/* ---- what the protocol asks of the mote ---- */
+
+static void protocol_send(void *context, mh_node_id destination, const struct mh_message *message)
+{
+    struct mh_mote *mote = context;
+    if (mote->config->clock) {
+        mh_clock_other_frame(mote->config->clock_state);
+    }
+    transmit(mote, destination, message);
 }
 
 static void protocol_set_timer(void *context, mh_tick time)
@@ -99,7 +139,7 @@ static void protocol_tracking(void *context, bool tracking)
 static void protocol_listen(void *context, bool needed)
 {
     struct mh_mote *mote = context;
-    if (mote->may_sleep == needed) {
+    if (mote->may_sleep == needed && !mote->config->clock) {
         mote->may_sleep = !needed;
         if (mote->port->sleep) {
             mote->port->sleep(mote->port_context, mote->may_sleep);
@@ -124,7 +164,7 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
     if (!mote || !config || !port || !port->transmit || !port->set_alarm || config->id >= MH_BROADCAST ||
         !mh_coordinate_valid(config->place.x_mm) || !mh_coordinate_valid(config->place.y_mm) ||
         !mh_coordinate_valid(config->place.z_mm) || !config->protocol || !config->protocol_state ||
-        (config->head && (!config->head_state || !port->report))) {
+        (config->head && (!config->head_state || !port->report)) || (config->clock && !config->clock_state)) {
         return MH_ERR_ARGUMENT;
     }
     memset(mote, 0, sizeof *mote);
@@ -134,11 +174,14 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
     const struct mh_protocol_node node = {config->id, config->place, config->head != NULL, &protocol_port, mote};
     mote->node = node;
     enum mh_status status = MH_OK;
-    if (config->sensor) {
+    if (config->clock) {
+        status = mh_clock_init(config->clock_state, config->clock, config->id, now);
+    }
+    if (status == MH_OK && config->sensor) {
         status = mh_sensor_init(&mote->sensor, config->sensor);
     }
     if (status == MH_OK && config->head) {
-        status = mh_head_init(config->head_state, config->head, now);
+        status = mh_head_init(config->head_state, config->head, network_time(mote, now));
     }
     if (status == MH_OK) {
         status = config->protocol->init(config->protocol_state, config->protocol_config, &mote->node);
@@ -155,9 +198,15 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
     if (!mote->config->sensor) {
         return MH_ERR_ARGUMENT;
     }
+    if (!knows_time(mote)) {
+        mote->counters.readings_unsynchronised++;
+        return MH_ERR_TIME;
+    }
     struct mh_sample sample;
+    struct mh_reading stamped = *reading;
+    stamped.time = network_time(mote, reading->time);
     const enum mh_status status =
-        mh_tick_before(now, reading->time) ? MH_ERR_TIME : mh_sensor_take(&mote->sensor, reading, &sample);
+        mh_tick_before(now, reading->time) ? MH_ERR_TIME : mh_sensor_take(&mote->sensor, &stamped, &sample);
     if (status != MH_OK) {
         if (status == MH_ERR_REPEATED) {
             mote->counters.readings_repeated++;
@@ -181,13 +230,34 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
     return MH_OK;
 }
 
+/* What was kept under the time before means nothing now. */
+static void time_jumped(struct mh_mote *mote, mh_tick now)
+{
+    const struct mh_mote_config *config = mote->config;
+    mote->asked = false;
+    if (config->sensor) {
+        (void)mh_sensor_init(&mote->sensor, config->sensor);
+    }
+    if (config->head) {
+        (void)mh_head_init(config->head_state, config->head, network_time(mote, now));
+        if (mote->tracking) {
+            mote->tracking = false;
+            config->protocol->tell_tracking(protocol_state(mote), now, false);
+        }
+    }
+}
+
 enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length)
 {
     struct mh_message message;
     const enum mh_status status = mh_wire_decode(frame, length, &message);
     if (status == MH_OK) {
         mote->counters.frames_received++;
-        mote->config->protocol->message(protocol_state(mote), now, &message);
+        if (message.kind != MH_MESSAGE_SYNC) {
+            mote->config->protocol->message(protocol_state(mote), now, &message);
+        } else if (mote->config->clock && mh_clock_message(mote->config->clock_state, now, &message.as.sync)) {
+            time_jumped(mote, now);
+        }
         set_alarm(mote, false);
     } else if (status == MH_ERR_UNKNOWN) {
         mote->counters.frames_unknown++;
@@ -199,10 +269,11 @@ enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *f
 
 void mh_mote_sent(struct mh_mote *mote, mh_tick now, enum mh_sent outcome)
 {
-    if (mote->config->protocol->sent) {
+    const bool of_clock = mote->config->clock && mh_clock_sent(mote->config->clock_state, now, outcome);
+    if (!of_clock && mote->config->protocol->sent) {
         mote->config->protocol->sent(protocol_state(mote), now, outcome);
-        set_alarm(mote, false);
     }
+    set_alarm(mote, false);
 }
 
 static void close_instant(struct mh_mote *mote, mh_tick now)
@@ -231,7 +302,12 @@ void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
         mote->protocol_alarm_set = false;
         mote->config->protocol->timer(protocol_state(mote), now);
     }
-    if (mote->config->head && !mh_tick_before(now, mh_head_deadline(mote->config->head_state))) {
+    struct mh_message message;
+    if (mote->config->clock && mh_clock_timer(mote->config->clock_state, now, &message)) {
+        transmit(mote, MH_BROADCAST, &message);
+    }
+    if (mote->config->head && knows_time(mote) &&
+        !mh_tick_before(network_time(mote, now), mh_head_deadline(mote->config->head_state))) {
         close_instant(mote, now);
     }
     set_alarm(mote, true);

@@ -1,5 +1,7 @@
 #include "motehound/collection.h"
 
+#include "motehound/spread.h"
+
 #include <string.h>
 
 #define NEWS_SHARE 8 /* a path shorter by this part of its hops is worth another relay within a round */
@@ -8,15 +10,9 @@ static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a :
 
 static bool has_come(mh_tick time, mh_tick now) { return !mh_tick_before(now, time); }
 
-/* A number below `limit` that differs between neighbours and from round to round: both are mixed by a multiplicative hash
- * (the finaliser of MurmurHash3). */
 static mh_tick spread(const struct mh_collection *c, mh_tick limit)
 {
-    uint32_t hash = c->node->id ^ ((uint32_t)c->round << 16 | c->hops) * 0x9E3779B1u;
-    hash = (hash ^ hash >> 16) * 0x85EBCA6Bu;
-    hash = (hash ^ hash >> 13) * 0xC2B2AE35u;
-    hash ^= hash >> 16;
-    return (mh_tick)((uint64_t)hash * limit >> 32);
+    return mh_spread(c->node->id, (uint32_t)c->round << 16 | c->hops, limit);
 }
 
 /* floor of the square root, digit by digit in base 4 */

@@ -18,8 +18,10 @@ static uint64_t fingerprint(enum mh_message_kind kind)
         return __mh_request_t_hash_recursive(NULL);
     case MH_MESSAGE_HELLO:
         return __mh_hello_t_hash_recursive(NULL);
-    default:
+    case MH_MESSAGE_LANDMARK:
         return __mh_landmark_t_hash_recursive(NULL);
+    default:
+        return __mh_sync_t_hash_recursive(NULL);
     }
 }
 
@@ -39,8 +41,10 @@ static int encode_body(const struct mh_message *message, uint8_t *bytes, int roo
         return __mh_request_t_encode_array(bytes, 0, room, &message->as.request, 1);
     case MH_MESSAGE_HELLO:
         return __mh_hello_t_encode_array(bytes, 0, room, &message->as.hello, 1);
-    default:
+    case MH_MESSAGE_LANDMARK:
         return __mh_landmark_t_encode_array(bytes, 0, room, &message->as.landmark, 1);
+    default:
+        return __mh_sync_t_encode_array(bytes, 0, room, &message->as.sync, 1);
     }
 }
 
@@ -61,8 +65,10 @@ static int decode_body(struct mh_message *message, const uint8_t *bytes, int len
         return __mh_request_t_decode_array(bytes, 0, length, &message->as.request, 1);
     case MH_MESSAGE_HELLO:
         return __mh_hello_t_decode_array(bytes, 0, length, &message->as.hello, 1);
-    default:
+    case MH_MESSAGE_LANDMARK:
         return __mh_landmark_t_decode_array(bytes, 0, length, &message->as.landmark, 1);
+    default:
+        return __mh_sync_t_decode_array(bytes, 0, length, &message->as.sync, 1);
     }
 }
 
@@ -86,6 +92,7 @@ static bool body_sound(const struct mh_message *message)
     const mh_request_t *request = &message->as.request;
     const mh_hello_t *hello = &message->as.hello;
     const mh_landmark_t *landmark = &message->as.landmark;
+    const mh_sync_t *sync = &message->as.sync;
     switch (message->kind) {
     case MH_MESSAGE_BEACON:
         return beacon_sound(&message->as.beacon);
@@ -98,8 +105,10 @@ static bool body_sound(const struct mh_message *message)
                valid(request->sender_x_mm, request->sender_y_mm);
     case MH_MESSAGE_HELLO:
         return hello->sender != -1 && valid(hello->x_mm, hello->y_mm);
-    default:
+    case MH_MESSAGE_LANDMARK:
         return beacon_sound(&landmark->beacon) && valid(landmark->x_mm, landmark->y_mm);
+    default:
+        return sync->sender != -1 && sync->root != -1 && sync->stamped <= 1;
     }
 }
 
