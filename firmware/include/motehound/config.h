@@ -77,10 +77,10 @@
 #define MH_LINK_SEEN_MAX 16
 #endif
 
-/* A message in an envelope that has been relayed this often is dropped and counted. The walk around a face is up to twice as many hops
- * as the face has edges, and the outer face of a sparse field has many. */
+/* A message in an envelope that has been relayed this often is dropped and counted. A walk around a face takes up to twice as many hops as
+ * the face has edges, and a sparse field of many nodes has long faces; a smaller number limits the harm where links are no unit discs. */
 #ifndef MH_ROUTE_HOPS_MAX
-#define MH_ROUTE_HOPS_MAX 1024
+#define MH_ROUTE_HOPS_MAX 4096
 #endif
 
 /* Synchronised time: pairs of local and network time that the line goes through, 8 bytes each, one a round; and neighbours whose messages are

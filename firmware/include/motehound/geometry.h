@@ -41,6 +41,12 @@ static inline bool mh_place_within(const struct mh_place *a, const struct mh_pla
     return (uint64_t)(dx * dx + dy * dy) <= (uint64_t)radius_mm * radius_mm;
 }
 
+/* Horizontal distance between a and b, rounded down. Integers only; about 32 steps of 64 bits. */
+uint32_t mh_place_distance_mm(const struct mh_place *a, const struct mh_place *b);
+
+/* floor of the square root */
+uint32_t mh_square_root(uint64_t square);
+
 /* place - origin in metres, horizontal part. */
 static inline struct mh_vec2 mh_place_relative(const struct mh_place *place, const struct mh_place *origin)
 {

@@ -14,3 +14,25 @@ struct mh_place mh_place_from_offset(const struct mh_place *origin, struct mh_ve
     struct mh_place place = {millimetres(origin->x_mm, offset.x), millimetres(origin->y_mm, offset.y), origin->z_mm};
     return place;
 }
+
+/* digit by digit in base 4 */
+uint32_t mh_square_root(uint64_t square)
+{
+    uint64_t result = 0;
+    for (uint64_t bit = (uint64_t)1 << 62; bit != 0; bit >>= 2) {
+        const uint64_t trial = result + bit;
+        result >>= 1;
+        if (square >= trial) {
+            square -= trial;
+            result += bit;
+        }
+    }
+    return (uint32_t)result;
+}
+
+uint32_t mh_place_distance_mm(const struct mh_place *a, const struct mh_place *b)
+{
+    const int64_t dx = (int64_t)a->x_mm - b->x_mm;
+    const int64_t dy = (int64_t)a->y_mm - b->y_mm;
+    return mh_square_root((uint64_t)(dx * dx + dy * dy));
+}

@@ -15,28 +15,6 @@ static mh_tick spread(const struct mh_collection *c, mh_tick limit)
     return mh_spread(c->node->id, (uint32_t)c->round << 16 | c->hops, limit);
 }
 
-/* floor of the square root, digit by digit in base 4 */
-static uint32_t root(uint64_t square)
-{
-    uint64_t result = 0;
-    for (uint64_t bit = (uint64_t)1 << 62; bit != 0; bit >>= 2) {
-        const uint64_t trial = result + bit;
-        result >>= 1;
-        if (square >= trial) {
-            square -= trial;
-            result += bit;
-        }
-    }
-    return (uint32_t)result;
-}
-
-static uint32_t distance_mm(const struct mh_place *a, const struct mh_place *b)
-{
-    const int64_t dx = (int64_t)a->x_mm - b->x_mm;
-    const int64_t dy = (int64_t)a->y_mm - b->y_mm;
-    return root((uint64_t)(dx * dx + dy * dy));
-}
-
 static void arm(struct mh_collection *c)
 {
     mh_tick next = c->upkeep_time;
@@ -201,18 +179,19 @@ static void consider_request(struct mh_collection *c, mh_tick now, const mh_requ
 {
     c->node->port->asked(c->node->context, now, interest, (mh_tick)request->time_ms);
     const uint32_t range = c->config->range_mm;
-    const uint32_t from_sender = distance_mm(sender, &interest->centre);
-    const uint32_t from_here = distance_mm(&c->node->place, &interest->centre);
+    const uint32_t from_sender = mh_place_distance_mm(sender, &interest->centre);
+    const uint32_t from_here = mh_place_distance_mm(&c->node->place, &interest->centre);
     if (covered || request->hops >= MH_HOPS_MAX || (from_here >= from_sender && from_here > interest->radius_mm)) {
         return;
     }
     const uint32_t progress = from_here < from_sender ? from_sender - from_here : 0;
     mh_tick wait = 0;
     if (progress < range) { /* the square root spreads the few that are nearly the best */
-        wait = (mh_tick)((uint64_t)c->config->request_wait * root((uint64_t)(range - progress) * range) / range);
+        wait =
+            (mh_tick)((uint64_t)c->config->request_wait * mh_square_root((uint64_t)(range - progress) * range) / range);
     }
     /* progress at least cos 30 degrees of the hop: such nodes stand in a sector as wide as its radius, so they hear each other */
-    const bool ahead = (uint64_t)8 * progress >= (uint64_t)7 * distance_mm(&c->node->place, sender);
+    const bool ahead = (uint64_t)8 * progress >= (uint64_t)7 * mh_place_distance_mm(&c->node->place, sender);
     if (!ahead && from_here > interest->radius_mm) {
         wait += c->config->request_wait;
         if (progress < range / 2) {
@@ -239,9 +218,9 @@ static void hear_request(struct mh_collection *c, mh_tick now, const mh_request_
         consider_request(c, now, request, &sender, &interest, covered);
     } else if (c->request_waits && c->request.origin == request->origin && c->request.time_ms == request->time_ms) {
         const bool inside = mh_place_within(&c->node->place, &interest.centre, interest.radius_mm);
-        const bool needless =
-            inside ? ++c->request_copies >= c->config->suppress_after
-                   : distance_mm(&sender, &interest.centre) <= distance_mm(&c->node->place, &interest.centre);
+        const bool needless = inside ? ++c->request_copies >= c->config->suppress_after
+                                     : mh_place_distance_mm(&sender, &interest.centre) <=
+                                           mh_place_distance_mm(&c->node->place, &interest.centre);
         c->request_waits = !covered && !needless;
     }
 }

@@ -41,12 +41,27 @@ static void within_includes_the_border(void)
     TEST_ASSERT_FALSE(mh_place_within(&a, &b, 4999));
 }
 
+static void roots_and_distances_are_rounded_down(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, mh_square_root(0));
+    TEST_ASSERT_EQUAL_UINT32(1, mh_square_root(3));
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, mh_square_root(UINT64_MAX));
+    for (uint32_t root = 1; root < 4000000000u - root / 3; root += root / 3 + 1) {
+        const uint64_t square = (uint64_t)root * root;
+        TEST_ASSERT_EQUAL_UINT32(root, mh_square_root(square));
+        TEST_ASSERT_EQUAL_UINT32(root - 1, mh_square_root(square - 1));
+    }
+    const struct mh_place a = {-1000000000, -1000000000, 0}, b = {1000000000, 1000000000, 5};
+    TEST_ASSERT_EQUAL_UINT32(2828427124u, mh_place_distance_mm(&a, &b));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(offset_round_trip);
     RUN_TEST(places_stay_on_the_map);
     RUN_TEST(within_includes_the_border);
+    RUN_TEST(roots_and_distances_are_rounded_down);
     port_exit(UNITY_END() > 0);
     return 0;
 }
