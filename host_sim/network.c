@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Why there is an instant: the caller asked for it, or the observer is to be told of the motes. */
+enum { INSTANT_OF_WORLD, INSTANT_OF_MOTES };
+
 #define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
 
 /* A frame that went on the air, to be told to the observer. */
@@ -71,10 +74,14 @@ void network_reading(struct network *network, uint32_t mote, int32_t counts, uin
 {
     const struct host_event event = {network->now, HOST_READING, mote, {.reading = {counts, target}}};
     happen(network, &event);
+    account_sample(&network->account, mote, network->now);
 }
 
 void network_power(struct network *network, uint32_t mote, bool on)
 {
+    if (on && network->account.open && energy_is_dead(&network->account.ledger, mote)) {
+        return;
+    }
     const struct host_event event = {.time = network->now, .kind = on ? HOST_START : HOST_STOP, .mote = mote};
     happen(network, &event);
     if (radio_power(&network->radio, network->now, mote, on ? RADIO_POWER_ON : RADIO_POWER_OFF)) {
@@ -82,20 +89,13 @@ void network_power(struct network *network, uint32_t mote, bool on)
     }
 }
 
-static void count_kind(struct network *network, const uint8_t *frame)
-{
-    for (int kind = 0; kind < MH_MESSAGE_KINDS; kind++) {
-        if (memcmp(frame, network->fingerprints[kind], sizeof network->fingerprints[kind]) == 0) {
-            network->frames_sent[kind]++;
-        }
-    }
-}
-
 static void on_air(void *context, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *bytes,
                    size_t length)
 {
     struct network *network = context;
-    count_kind(network, bytes);
+    const enum mh_message_kind kind = frame_kind(&network->kinds, bytes, length);
+    network->frames_sent[kind]++;
+    account_frame(&network->account, sender, time, account_cause(kind));
     if (!network->config.observer->frame) {
         return;
     }
@@ -114,6 +114,10 @@ static void heard(void *context, sim_time time, const uint8_t *bytes, size_t len
                   uint32_t count)
 {
     struct network *network = context;
+    const enum energy_cause cause = account_cause(frame_kind(&network->kinds, bytes, length));
+    for (uint32_t i = 0; i < count && network->account.open; i++) {
+        account_frame(&network->account, receivers[i], time, cause);
+    }
     const uint8_t *kept_bytes = keep(network, bytes, length);
     const uint32_t *kept_receivers = keep(network, receivers, count * sizeof *receivers);
     if (kept_bytes && kept_receivers) {
@@ -129,14 +133,29 @@ static void sent(void *context, sim_time time, uint32_t sender, enum mh_sent out
     happen(context, &event);
 }
 
+static void state(void *context, sim_time time, uint32_t mote, enum radio_state radio_state, uint8_t cause)
+{
+    struct network *network = context;
+    account_radio(&network->account, mote, time, radio_state, cause);
+}
+
+static void dies(void *context, uint32_t mote, sim_time at)
+{
+    (void)at;
+    network_power(context, mote, false);
+}
+
 /* ---- what the motes did ---- */
 
 static void transmit(struct network *network, const struct host_action *action)
 {
     const mh_node_id destination = action->as.transmit.destination;
     const uint32_t to = destination == MH_BROADCAST ? RADIO_ALL : roster_find(network->config.roster, destination);
-    if (radio_send(&network->radio, action->time + network->lookahead, action->mote, to, action->as.transmit.bytes,
-                   action->as.transmit.length, 0)) {
+    const uint8_t *bytes = action->as.transmit.bytes;
+    const size_t length = action->as.transmit.length;
+    const enum energy_cause cause = account_cause(frame_kind(&network->kinds, bytes, length));
+    if (radio_send(&network->radio, action->time + network->lookahead, action->mote, to, bytes, length,
+                   (uint8_t)cause)) {
         network->out_of_memory = true;
     }
 }
@@ -149,6 +168,7 @@ static void act(struct network *network, const struct host_action *action)
         transmit(network, action);
         break;
     case HOST_REPORT:
+        account_step(&network->account, action->mote, action->time, action->as.estimate.measurements);
         config->report(config->context, seconds(network, (int64_t)action->time),
                        seconds(network, time_of(action->as.estimate.time, action->time)), &action->as.estimate);
         break;
@@ -199,17 +219,40 @@ static sim_time begin_of_window(const struct network *network)
 {
     const sim_time first = network->event_count > 0 ? network->events[0].time : SIM_TIME_NEVER;
     const sim_time world = earlier(event_queue_next(&network->instants), radio_next(&network->radio));
-    return earlier(earlier(first, world), network->host.next(network->host.state));
+    const sim_time battery = network->account.open ? energy_next(&network->account.ledger) : SIM_TIME_NEVER;
+    return earlier(earlier(first, world), earlier(battery, network->host.next(network->host.state)));
+}
+
+static int tell_motes(struct network *network)
+{
+    const struct network_config *config = &network->config;
+    const bool accounted = network->account.open;
+    const struct energy *ledger = &network->account.ledger;
+    for (uint32_t i = 0; i < config->roster->count; i++) {
+        const struct mote_state told = {.energy_mj =
+                                            accounted ? 1e3 * energy_used_j(ledger, i, network->now) : (double)NAN,
+                                        .battery_left = accounted ? energy_battery_left(ledger, i, network->now) : 1,
+                                        .alive = !accounted || !energy_is_dead(ledger, i),
+                                        .clock_error_ms = (double)NAN};
+        config->observer->mote(config->observer->context, network_time_s(network), roster_id(config->roster, i), &told);
+    }
+    return event_queue_push(&network->instants, network->now + network->mote_interval, INSTANT_OF_MOTES);
 }
 
 static int window(struct network *network, sim_time end, char *error, size_t error_size)
 {
-    const struct radio_sink sink = {.context = network, .on_air = on_air, .heard = heard, .sent = sent};
+    const struct radio_sink sink = {.context = network,
+                                    .on_air = on_air,
+                                    .heard = heard,
+                                    .sent = sent,
+                                    .state = network->account.open ? state : NULL};
     struct host *host = &network->host;
     struct event event;
     network->windows++;
     while (event_queue_next(&network->instants) == network->now && event_queue_pop(&network->instants, &event)) {
-        network->out_of_memory |= network->config.instant(network->config.context) != 0;
+        network->out_of_memory |= event.content == INSTANT_OF_WORLD
+                                      ? network->config.instant(network->config.context) != 0
+                                      : tell_motes(network) != 0;
     }
     const sim_time until =
         earlier(earlier(network->now + network->lookahead, event_queue_next(&network->instants)), end);
@@ -222,6 +265,10 @@ static int window(struct network *network, sim_time end, char *error, size_t err
         network->out_of_memory |= host_actions_sort(&network->actions) != 0;
     }
     conclude(network);
+    network->now = until;
+    if (network->account.open) {
+        energy_run(&network->account.ledger, until, dies, network);
+    }
     if (network->out_of_memory) {
         snprintf(error, error_size, "out of memory at %.3f s", network_time_s(network));
         return -1;
@@ -241,6 +288,7 @@ int network_run(struct network *network, sim_time end, const volatile sig_atomic
             return -1;
         }
     }
+    network->now = end;
     return 0;
 }
 
@@ -267,18 +315,6 @@ static int make_radio(struct network *network)
     return result;
 }
 
-static void learn_fingerprints(struct network *network)
-{
-    for (int kind = 0; kind < MH_MESSAGE_KINDS; kind++) {
-        const struct mh_message message = {.kind = (enum mh_message_kind)kind};
-        uint8_t frame[MH_FRAME_MAX];
-        size_t length;
-        if (mh_wire_encode(&message, frame, &length) == MH_OK) {
-            memcpy(network->fingerprints[kind], frame, sizeof network->fingerprints[kind]);
-        }
-    }
-}
-
 static int bring_up(struct network *network)
 {
     const struct roster *roster = network->config.roster;
@@ -297,15 +333,24 @@ static int bring_up(struct network *network)
     return network->out_of_memory ? -1 : 0;
 }
 
+static int schedule_motes(struct network *network)
+{
+    const double interval_s = network->config.scenario->metrics.mote_interval_s;
+    network->mote_interval = (sim_time)llround(interval_s * SIM_TIME_PER_S);
+    return network->config.observer->mote && network->mote_interval > 0
+               ? event_queue_push(&network->instants, network->mote_interval, INSTANT_OF_MOTES)
+               : 0;
+}
+
 int network_make(struct network *network, const struct network_config *config, char *error, size_t error_size)
 {
     const struct roster *roster = config->roster;
     const double lookahead_us = round(config->scenario->radio.delay_s * SIM_TIME_PER_S);
     *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
-    learn_fingerprints(network);
-    if (make_radio(network) ||
+    frame_kinds_learn(&network->kinds);
+    if (account_open(&network->account, config->scenario, roster->count, roster->count - 1) || make_radio(network) ||
         host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->kit.protocol.protocol) ||
-        bring_up(network)) {
+        bring_up(network) || schedule_motes(network)) {
         snprintf(error, error_size, "out of memory for %u nodes", (unsigned)roster->count);
         network_free(network);
         return -1;
@@ -319,6 +364,7 @@ void network_free(struct network *network)
         network->host.destroy(network->host.state);
     }
     radio_free(&network->radio);
+    account_close(&network->account);
     event_queue_free(&network->instants);
     host_actions_free(&network->actions);
     arena_free(&network->arena);
@@ -327,7 +373,10 @@ void network_free(struct network *network)
     *network = (struct network){0};
 }
 
-int network_schedule(struct network *network, sim_time time) { return event_queue_push(&network->instants, time, 0); }
+int network_schedule(struct network *network, sim_time time)
+{
+    return event_queue_push(&network->instants, time, INSTANT_OF_WORLD);
+}
 
 int network_count(struct network *network, struct simulation_counters *counters, char *error, size_t error_size)
 {
@@ -337,6 +386,11 @@ int network_count(struct network *network, struct simulation_counters *counters,
     }
     counters->events = totals.events;
     counters->energy = energy_total_unknown();
+    counters->windows = network->windows;
+    if (network->account.open && energy_total(&network->account.ledger, network->now, &counters->energy)) {
+        snprintf(error, error_size, "out of memory");
+        return -1;
+    }
     counters->clock_error_p99_ms = (double)NAN;
     counters->motes = totals.motes;
     counters->head = totals.heads;

@@ -8,8 +8,10 @@
 #ifndef MOTEHOUND_SIM_NETWORK_H
 #define MOTEHOUND_SIM_NETWORK_H
 
+#include "energy/account.h"
 #include "engine/arena.h"
 #include "engine/event_queue.h"
+#include "frame_kinds.h"
 #include "hosts/host.h"
 #include "radio/radio.h"
 #include "roster.h"
@@ -31,20 +33,21 @@ struct network_config {
 
 struct network {
     struct network_config config;
-    sim_time lookahead;
+    sim_time lookahead, mote_interval;
     struct event_queue instants;
     struct radio radio;
     struct host host;
-    sim_time now; /* beginning of the window */
+    sim_time now; /* beginning of the window; after its end, that */
     /* of the window: what happens to the motes, what they did, which frames went on the air */
     struct host_event *events;
     size_t event_count, event_capacity;
     struct host_actions actions;
     struct network_frame *frames;
     size_t frame_count, frame_capacity;
-    struct arena arena; /* bytes and receivers of the window's frames */
-    uint64_t windows, frames_sent[MH_MESSAGE_KINDS];
-    uint8_t fingerprints[MH_MESSAGE_KINDS][8]; /* how the frames of a kind begin */
+    struct arena arena;                                  /* bytes and receivers of the window's frames */
+    uint64_t windows, frames_sent[MH_MESSAGE_KINDS + 1]; /* the last: of no known kind */
+    struct frame_kinds kinds;
+    struct account account;
     bool out_of_memory;
 };
 
@@ -63,7 +66,7 @@ int network_schedule(struct network *network, sim_time time);
 /* For config.instant: mote `mote` has a reading, now. Readings that it refuses it counts. */
 void network_reading(struct network *network, uint32_t mote, int32_t counts, uint8_t target);
 
-/* For config.instant: power mote `mote` up, with cleared memory, or down, now. */
+/* For config.instant: power mote `mote` up, with cleared memory, or down, now. One with an empty battery stays down. */
 void network_power(struct network *network, uint32_t mote, bool on);
 
 /* Let everything happen that happens before `end`. Returns 0, or -1 with one line in `error`: stopped, a mote that does not come

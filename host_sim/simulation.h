@@ -45,9 +45,10 @@ struct observer {
 /* Totals of a run, beside what the observer was told. */
 struct simulation_counters {
     uint64_t events;  /* that motes handled: readings, frames heard, fates of frames, alarms ... */
+    uint64_t windows; /* of simulated time that the motes were run through together */
     uint64_t samples; /* sampling instants while the source was present */
-    uint64_t frames_sent[MH_MESSAGE_KINDS]; /* by kind */
-    uint64_t frames_received, frames_lost;  /* receptions; the last one is the sum over the reasons at a receiver */
+    uint64_t frames_sent[MH_MESSAGE_KINDS + 1]; /* by kind; the last: of none of the library's */
+    uint64_t frames_received, frames_lost;      /* receptions; the last one is the sum over the reasons at a receiver */
     uint64_t frames_lost_by[LOSS_REASONS], frames_repeated;
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;

@@ -7,7 +7,7 @@
 static uint64_t frames_sent(const struct simulation_counters *counters)
 {
     uint64_t sum = 0;
-    for (int kind = 0; kind < MH_MESSAGE_KINDS; kind++) {
+    for (int kind = 0; kind <= MH_MESSAGE_KINDS; kind++) {
         sum += counters->frames_sent[kind];
     }
     return sum;

@@ -55,7 +55,8 @@
     X(ENERGY_MJ_STATE_RECEIVE, "energy_mj_state_receive", energy_mj(c, ENERGY_RECEIVE, ANY), "energy of the radios while receiving")               \
     X(ENERGY_MJ_STATE_LISTEN, "energy_mj_state_listen", energy_mj(c, ENERGY_LISTEN, ANY), "energy of the radios while listening")                  \
     X(ENERGY_MJ_STATE_SLEEP, "energy_mj_state_sleep", energy_mj(c, ENERGY_SLEEP, ANY), "energy of the radios while sleeping")                      \
-    X(EVENTS, "events", c->events, "of the simulation")
+    X(EVENTS, "events", c->events, "that motes handled: readings, frames, alarms ...")                                                           \
+    X(WINDOWS, "windows", c->windows, "of simulated time that the motes were run through together")
 /* clang-format on */
 
 #define TOTAL_ENUMERATOR(id, name, value, meaning) TOTAL_##id,

@@ -11,8 +11,8 @@
 #define SHORTEST_US 1000
 
 const char *const energy_state_names[ENERGY_STATES] = {"sleep", "listen", "receive", "transmit", "cpu", "sensing"};
-const char *const energy_cause_names[ENERGY_CAUSES] = {"localisation", "clustering", "reporting",
-                                                       "routing",      "time",       "idle"};
+const char *const energy_cause_names[ENERGY_CAUSES] = {"idle",      "localisation", "clustering",
+                                                       "reporting", "routing",      "time"};
 
 /* Where the time of a state begins among the cells; the middle four have a cell for each cause. */
 static const uint8_t first_cell[ENERGY_STATES + 1] = {

@@ -26,12 +26,12 @@ enum energy_state {
 };
 
 enum energy_cause {
+    ENERGY_IDLE,         /* nothing: waiting, sleeping */
     ENERGY_LOCALISATION, /* sampling, computing a position, asking for readings */
     ENERGY_CLUSTERING,
     ENERGY_REPORTING, /* carrying readings and positions to where they are wanted */
     ENERGY_ROUTING,   /* finding ways and neighbours */
     ENERGY_TIME,      /* keeping clocks together */
-    ENERGY_IDLE,      /* nothing: waiting, sleeping */
     ENERGY_CAUSES
 };
 

@@ -101,9 +101,13 @@ const struct scenario_key scenario_keys[] = {
     {"tracker.acceleration_sd_mps2", KEY_NUMBER, AT(tracker.acceleration_sd_mps2), "1", 1e-3, 1e3, NULL, "range: assumed acceleration of the target"},
     {"tracker.height_m", KEY_NUMBER, AT(tracker.height_m), "1", -1e4, 1e4, NULL, "range: of the target in the nodes' frame"},
     {"tracker.window_s", KEY_NUMBER, AT(tracker.window_s), "0", 0, 3600, NULL, "reports are waited for this long after their sample; 0 for half the interval"},
+    {"energy.profile", KEY_WORD, AT(energy.profile), "mica2", 0, 0, "mica2|micaz|none", "whose currents are charged; none: energy is not accounted for"},
+    {"energy.battery_j", KEY_NUMBER, AT(energy.battery_j), "0", 0, 1e6, NULL, "of each mote, which dies when it is used up; 0: all are on mains"},
+    {"energy.sink_mains", KEY_SWITCH, AT(energy.sink_mains), "true", 0, 0, NULL, "the sink has no battery, and its energy is left out of the totals"},
     {"metrics.skip_first", KEY_COUNT, AT(metrics.skip_first), "3", 0, 1e6, NULL, "estimates of each target left out of the errors"},
     {"metrics.lost_m", KEY_NUMBER, AT(metrics.lost_m), "5", 1e-6, 1e6, NULL, "a track is lost when its error is larger than this ..."},
     {"metrics.lost_samples", KEY_COUNT, AT(metrics.lost_samples), "5", 1, 1e6, NULL, "... in so many successive estimates"},
+    {"metrics.mote_interval_s", KEY_NUMBER, AT(metrics.mote_interval_s), "10", 0, 1e6, NULL, "between the states of the motes that a log or bus is told; 0: never"},
     {"sweep.key", KEY_TEXT, AT(sweep.key), "", 0, 100, NULL, "what `motehound run --sweep` varies"},
     {"sweep.values", KEY_LIST, AT(sweep.values), "", 0, 1000, NULL, "the values it takes"},
 };

@@ -119,9 +119,15 @@ struct scenario {
         double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */
     } tracker;
     struct {
-        int64_t skip_first;   /* estimates of each track left out of the error metrics */
-        double lost_m;        /* a track is lost when its error exceeds this ... */
-        int64_t lost_samples; /* ... in so many successive samples */
+        char *profile;    /* which mote's currents; `none`: energy is not accounted for */
+        double battery_j; /* that each mote has; 0: on mains */
+        bool sink_mains;  /* the sink has no battery, and its energy is left out of the totals */
+    } energy;
+    struct {
+        int64_t skip_first;     /* estimates of each track left out of the error metrics */
+        double lost_m;          /* a track is lost when its error exceeds this ... */
+        int64_t lost_samples;   /* ... in so many successive samples */
+        double mote_interval_s; /* between the states of the motes on a bus; 0: never */
     } metrics;
     struct {
         char *key; /* what `motehound run --sweep` varies; empty for nothing */

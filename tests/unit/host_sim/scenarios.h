@@ -10,9 +10,10 @@ static struct waypoint e2_points[] = {{1, 1, 0},     {20, 12, 1.0}, {45, 18, 2.0
 
 static inline struct scenario e1(void)
 {
-    static char luo[] = "luo", collection[] = "collection";
+    static char luo[] = "luo", collection[] = "collection", mica2[] = "mica2";
     return (struct scenario){
         .field = {80, 80},
+        .energy = {.profile = mica2, .sink_mains = true},
         .source = {.path = PATH_ARCS,
                    .points = e1_points,
                    .points_count = 2,

@@ -223,7 +223,7 @@ static void totals_leave_out_the_mote_on_mains(void)
         }
     }
     NEAR(7 * 3 * 0.081045, sum);
-    NEAR(2 * 3 * 0.081, totals.joules[ENERGY_TRANSMIT][ENERGY_LOCALISATION]); /* motes 0 and 6 */
+    NEAR(2 * 3 * 0.081, totals.joules[ENERGY_TRANSMIT][ENERGY_IDLE]); /* motes 0 and 6 */
     TEST_ASSERT_EQUAL_UINT32(0, totals.dead);
     TEST_ASSERT_TRUE(isnan(totals.lifetime_s) && isnan(totals.lifetime_half_s));
 }

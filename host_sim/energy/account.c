@@ -1,0 +1,81 @@
+#include "energy/account.h"
+
+int account_open(struct account *account, const struct scenario *scenario, uint32_t motes, uint32_t sink)
+{
+    const struct energy_profile *profile = energy_profile_find(scenario->energy.profile);
+    *account = (struct account){.open = profile != NULL, .tracker = scenario->tracker.name};
+    if (!account->open) {
+        return 0;
+    }
+    const struct energy_config config = {.profile = profile,
+                                         .power_dbm = 0,
+                                         .battery_j = scenario->energy.battery_j,
+                                         .on_mains = scenario->energy.sink_mains ? sink : UINT32_MAX};
+    account->sensing_us = energy_sensing_us();
+    account->sample_us = energy_sample_us(profile);
+    account->frame_us = energy_frame_us(profile);
+    if (energy_make(&account->ledger, &config, motes)) {
+        return -1;
+    }
+    for (uint32_t i = 0; i < motes; i++) {
+        energy_radio(&account->ledger, i, 0, ENERGY_LISTEN, ENERGY_IDLE);
+    }
+    return 0;
+}
+
+void account_close(struct account *account)
+{
+    if (account->open) {
+        energy_free(&account->ledger);
+    }
+    *account = (struct account){0};
+}
+
+enum energy_cause account_cause(enum mh_message_kind kind)
+{
+    switch (kind) {
+    case MH_MESSAGE_REPORT:
+        return ENERGY_REPORTING;
+    case MH_MESSAGE_REQUEST:
+        return ENERGY_LOCALISATION;
+    case MH_MESSAGE_BEACON:
+    case MH_MESSAGE_HELLO:
+    case MH_MESSAGE_LANDMARK:
+    case MH_MESSAGE_KINDS:
+        return ENERGY_ROUTING;
+    }
+    return ENERGY_ROUTING;
+}
+
+void account_radio(struct account *account, uint32_t mote, sim_time time, enum radio_state state, uint8_t cause)
+{
+    static const enum energy_state states[] = {[RADIO_SLEEP] = ENERGY_SLEEP,
+                                               [RADIO_LISTEN] = ENERGY_LISTEN,
+                                               [RADIO_RECEIVE] = ENERGY_RECEIVE,
+                                               [RADIO_TRANSMIT] = ENERGY_TRANSMIT,
+                                               [RADIO_OFF] = ENERGY_OFF};
+    energy_radio(&account->ledger, mote, time, states[state], (enum energy_cause)cause);
+}
+
+void account_sample(struct account *account, uint32_t mote, sim_time time)
+{
+    if (account->open) {
+        energy_charge(&account->ledger, mote, time, ENERGY_SENSING, ENERGY_LOCALISATION, account->sensing_us);
+        energy_charge(&account->ledger, mote, time, ENERGY_CPU, ENERGY_LOCALISATION, account->sample_us);
+    }
+}
+
+void account_frame(struct account *account, uint32_t mote, sim_time time, enum energy_cause cause)
+{
+    if (account->open) {
+        energy_charge(&account->ledger, mote, time, ENERGY_CPU, cause, account->frame_us);
+    }
+}
+
+void account_step(struct account *account, uint32_t mote, sim_time time, int measurements)
+{
+    if (account->open) {
+        const uint64_t takes = energy_tracker_us(account->ledger.profile, account->tracker, measurements);
+        energy_charge(&account->ledger, mote, time, ENERGY_CPU, ENERGY_LOCALISATION, takes);
+    }
+}
