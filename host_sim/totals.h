@@ -15,6 +15,7 @@
     X(FRAMES_SENT_REQUESTS, "frames_sent_requests", c->frames_sent[MH_MESSAGE_REQUEST], "of these requests of the head for readings")              \
     X(FRAMES_SENT_HELLOS, "frames_sent_hellos", c->frames_sent[MH_MESSAGE_HELLO], "of these hellos to the neighbours")                             \
     X(FRAMES_SENT_LANDMARKS, "frames_sent_landmarks", c->frames_sent[MH_MESSAGE_LANDMARK], "of these landmarks, which say where the head is")      \
+    X(FRAMES_SENT_SYNCS, "frames_sent_syncs", c->frames_sent[MH_MESSAGE_SYNC], "of these synchronisations of the clocks")                          \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \
     X(FRAMES_REPEATED, "frames_repeated", c->frames_repeated, "of the frames sent those sent again for want of an acknowledgement")                    \

@@ -8,7 +8,7 @@ int account_open(struct account *account, const struct scenario *scenario, uint3
         return 0;
     }
     const struct energy_config config = {.profile = profile,
-                                         .power_dbm = 0,
+                                         .power_dbm = scenario->radio.power_dbm,
                                          .battery_j = scenario->energy.battery_j,
                                          .on_mains = scenario->energy.sink_mains ? sink : UINT32_MAX};
     account->sensing_us = energy_sensing_us();
@@ -38,6 +38,8 @@ enum energy_cause account_cause(enum mh_message_kind kind)
         return ENERGY_REPORTING;
     case MH_MESSAGE_REQUEST:
         return ENERGY_LOCALISATION;
+    case MH_MESSAGE_SYNC:
+        return ENERGY_TIME;
     case MH_MESSAGE_BEACON:
     case MH_MESSAGE_HELLO:
     case MH_MESSAGE_LANDMARK:

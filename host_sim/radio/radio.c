@@ -57,7 +57,8 @@ struct radio_mote {
     uint32_t ack_to;
     uint16_t queued;
     uint16_t signals; /* that arrive above the sensitivity, if states are shown */
-    uint8_t power, mac, ack, ack_cause, shown;
+    uint8_t power, mac, ack, mac_cause, ack_cause, signal_cause;
+    uint8_t shown, shown_cause; /* as last told */
 };
 
 /* ---- making ---- */
@@ -227,7 +228,8 @@ static bool listens(const struct radio_mote *mote)
     return mote->power == RADIO_POWER_ON || (mote->power == RADIO_POWER_ASLEEP && (mote->mac || mote->ack));
 }
 
-static void show(const struct run *run, uint32_t index, uint8_t cause)
+/* A radio that waits to send, or for an answer, listens for its frame's cause. */
+static void show(const struct run *run, uint32_t index)
 {
     struct radio_mote *mote = &run->radio->motes[index];
     if (!run->sink->state) {
@@ -238,8 +240,11 @@ static void show(const struct run *run, uint32_t index, uint8_t cause)
                                    : !listens(mote)                                       ? RADIO_SLEEP
                                    : mote->signals > 0                                    ? RADIO_RECEIVE
                                                                                           : RADIO_LISTEN;
-    if (state != mote->shown) {
+    const uint8_t own = mote->ack ? mote->ack_cause : mote->mac ? mote->mac_cause : 0;
+    const uint8_t cause = state == RADIO_RECEIVE ? mote->signal_cause : own;
+    if (state != mote->shown || (cause != mote->shown_cause && state != RADIO_RECEIVE)) {
         mote->shown = (uint8_t)state;
+        mote->shown_cause = cause;
         run->sink->state(run->sink->context, run->now, index, state, cause);
     }
 }
@@ -251,7 +256,8 @@ static void enter(const struct run *run, uint32_t index, enum mac_state state, u
         mote->awake = run->now;
     }
     mote->mac = (uint8_t)state;
-    show(run, index, cause);
+    mote->mac_cause = cause;
+    show(run, index);
 }
 
 static void enter_ack(const struct run *run, uint32_t index, enum ack_state state)
@@ -261,7 +267,7 @@ static void enter_ack(const struct run *run, uint32_t index, enum ack_state stat
         mote->awake = run->now;
     }
     mote->ack = (uint8_t)state;
-    show(run, index, mote->ack_cause);
+    show(run, index);
 }
 
 /* ---- who is in reach ---- */
@@ -321,7 +327,8 @@ static void show_signal(const struct run *run, uint32_t sender, uint8_t cause, i
     for (uint32_t i = 0; i < count; i++) {
         struct radio_mote *mote = &run->radio->motes[receivers[i]];
         mote->signals = (uint16_t)(mote->signals + change);
-        show(run, receivers[i], cause);
+        mote->signal_cause = change > 0 ? cause : mote->signal_cause;
+        show(run, receivers[i]);
     }
 }
 
@@ -502,7 +509,7 @@ static void back_off(const struct run *run, uint32_t index)
 }
 
 /* Take up the next frame, if there is one; those that were refused get their answer in their turn. */
-static void next_frame(const struct run *run, uint32_t index, uint8_t cause)
+static void next_frame(const struct run *run, uint32_t index)
 {
     struct radio *radio = run->radio;
     struct radio_mote *mote = &radio->motes[index];
@@ -511,7 +518,7 @@ static void next_frame(const struct run *run, uint32_t index, uint8_t cause)
         tell_sent(run, index, MH_SENT_BUSY);
     }
     if (mote->first == NONE) {
-        enter(run, index, MAC_IDLE, cause);
+        enter(run, index, MAC_IDLE, 0);
         return;
     }
     csma_begin(&mote->csma);
@@ -521,10 +528,9 @@ static void next_frame(const struct run *run, uint32_t index, uint8_t cause)
 static void finish(const struct run *run, uint32_t index, enum mh_sent outcome)
 {
     struct radio_mote *mote = &run->radio->motes[index];
-    const uint8_t cause = run->radio->frames[mote->first].cause;
     pop(run->radio, mote);
     tell_sent(run, index, outcome);
-    next_frame(run, index, cause);
+    next_frame(run, index);
 }
 
 static void busy(const struct run *run, uint32_t index)
@@ -742,7 +748,7 @@ static void land(const struct run *run, uint32_t index)
     free_frame(radio, index);
     show_signal(run, flight.sender, flight.cause, -1);
     if (!flight.cut) {
-        enter(run, flight.sender, MAC_IDLE, flight.cause);
+        enter(run, flight.sender, MAC_IDLE, 0);
         if (flight.destination != RADIO_ALL && !received) {
             count_lost(run, LOSS_NO_ACK);
         }
@@ -775,7 +781,7 @@ static void frame_comes(const struct run *run, uint32_t index)
     }
     mote->last = index;
     if (mote->mac == MAC_IDLE) {
-        next_frame(run, frame->sender, frame->cause);
+        next_frame(run, frame->sender);
     }
 }
 
@@ -810,7 +816,7 @@ static void switch_power(const struct run *run, uint32_t index, enum radio_power
     if (!listened && listens(mote)) {
         mote->awake = run->now;
     }
-    show(run, index, 0);
+    show(run, index);
 }
 
 static void happen(const struct run *run, uint32_t content)

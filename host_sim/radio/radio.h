@@ -61,7 +61,7 @@ struct radio_sink {
                   uint32_t count);
     /* What became of a frame: once for each, a sender's in the order of sending, but for those of a radio that was switched off. */
     void (*sent)(void *context, sim_time time, uint32_t sender, enum mh_sent outcome);
-    /* A radio changes its state, for a frame of that cause. Before the first call all listen. A radio receives while the
+    /* A radio changes its state, for a frame of that cause; 0 when it rests. Before the first call all listen. A radio receives while the
      * signal of any frame is above its sensitivity, whoever it is for. */
     void (*state)(void *context, sim_time time, uint32_t mote, enum radio_state state, uint8_t cause);
 };

@@ -22,7 +22,8 @@ struct draw {
 static struct draw *draws;
 static sim_time last;
 static long changes, motes, dead;
-static double battery_j;
+static double battery_j, power_dbm;
+static bool contends; /* radios wait for a free channel, and listen for a frame meanwhile */
 static volatile sig_atomic_t stop;
 static char line[300];
 
@@ -43,7 +44,7 @@ void __wrap_energy_charge(struct energy *energy, uint32_t mote, sim_time time, e
 static double watts(const struct energy *energy, enum energy_state state)
 {
     const struct energy_profile *p = energy->profile;
-    const double transmit = energy_profile_transmit(p, 0);
+    const double transmit = energy_profile_transmit(p, power_dbm);
     const double currents[] = {
         [ENERGY_SLEEP] = p->sleep,    [ENERGY_LISTEN] = p->listen, [ENERGY_RECEIVE] = p->receive,
         [ENERGY_TRANSMIT] = transmit, [ENERGY_CPU] = p->cpu,       [ENERGY_SENSING] = p->sensing};
@@ -67,6 +68,7 @@ int __wrap_energy_make(struct energy *energy, const struct energy_config *config
     TEST_ASSERT_NOT_NULL(draws);
     last = 0;
     changes = 0;
+    power_dbm = config->power_dbm;
     return __real_energy_make(energy, config, count);
 }
 
@@ -76,6 +78,11 @@ void __wrap_energy_radio(struct energy *energy, uint32_t mote, sim_time time, en
     struct draw *draw = &draws[mote];
     TEST_ASSERT_TRUE(time >= draw->since);
     TEST_ASSERT_TRUE((unsigned)cause < ENERGY_CAUSES);
+    if (state == ENERGY_TRANSMIT || state == ENERGY_RECEIVE) {
+        TEST_ASSERT_TRUE(cause != ENERGY_IDLE);
+    } else {
+        TEST_ASSERT_TRUE(cause == ENERGY_IDLE || (state == ENERGY_LISTEN && contends));
+    }
     draw->joules += draw->watts * (double)(time - draw->since) / SIM_TIME_PER_S;
     draw->since = time;
     draw->watts = watts(energy, state) + (state == ENERGY_OFF ? 0 : idle_watts(energy));
@@ -156,6 +163,7 @@ static void run(const char *name, const char *path, const char *profile)
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &scenario, error, sizeof error), error);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, "energy.profile", profile, error, sizeof error), error);
     scenario.energy.battery_j = battery_j;
+    contends = strcmp(scenario.radio.profile, "ideal") != 0;
     stop = 0;
     const int status = simulation_run(&scenario, 1, &observer, &stop, &counters, error, sizeof error);
     TEST_ASSERT_TRUE_MESSAGE(status == 0 || stop, error);
