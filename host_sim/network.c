@@ -249,6 +249,9 @@ static int window(struct network *network, sim_time end, char *error, size_t err
     struct host *host = &network->host;
     struct event event;
     network->windows++;
+    if (network->account.open) {
+        energy_run(&network->account.ledger, network->now, dies, network);
+    }
     while (event_queue_next(&network->instants) == network->now && event_queue_pop(&network->instants, &event)) {
         network->out_of_memory |= event.content == INSTANT_OF_WORLD
                                       ? network->config.instant(network->config.context) != 0
@@ -265,10 +268,6 @@ static int window(struct network *network, sim_time end, char *error, size_t err
         network->out_of_memory |= host_actions_sort(&network->actions) != 0;
     }
     conclude(network);
-    network->now = until;
-    if (network->account.open) {
-        energy_run(&network->account.ledger, until, dies, network);
-    }
     if (network->out_of_memory) {
         snprintf(error, error_size, "out of memory at %.3f s", network_time_s(network));
         return -1;

@@ -166,19 +166,13 @@ void energy_charge(struct energy *energy, uint32_t index, sim_time time, enum en
     }
 }
 
-sim_time energy_next(const struct energy *energy)
-{
-    if (energy->first_dead != NOBODY) {
-        return energy->motes[energy->first_dead].since;
-    }
-    return event_queue_next(&energy->checks);
-}
+sim_time energy_next(const struct energy *energy) { return event_queue_next(&energy->checks); }
 
-void energy_run(struct energy *energy, sim_time until, void (*dies)(void *context, uint32_t mote, sim_time at),
+void energy_run(struct energy *energy, sim_time now, void (*dies)(void *context, uint32_t mote, sim_time at),
                 void *context)
 {
     struct event check;
-    while (event_queue_next(&energy->checks) < until && event_queue_pop(&energy->checks, &check)) {
+    while (event_queue_next(&energy->checks) <= now && event_queue_pop(&energy->checks, &check)) {
         struct energy_mote *mote = &energy->motes[check.content];
         if (!mote->dead && check.time > mote->since) {
             settle(energy, mote, check.time);

@@ -84,12 +84,12 @@ void energy_radio(struct energy *energy, uint32_t mote, sim_time time, enum ener
 void energy_charge(struct energy *energy, uint32_t mote, sim_time time, enum energy_state state,
                    enum energy_cause cause, uint64_t duration_us);
 
-/* When energy_run is to be called again, at the latest; SIM_TIME_NEVER if no battery can empty. */
+/* When energy_run is to be called again, at the latest; SIM_TIME_NEVER if no battery can empty any more. */
 sim_time energy_next(const struct energy *energy);
 
-/* Tell of each mote whose battery has been found empty before `until`, once; `at` is when it was, to the microsecond. It is
+/* Tell of each mote whose battery has been found empty by `now`, once; `at` is when it was, to the microsecond. It is
  * found within 1 ms of that, or as much later as one piece of work takes. */
-void energy_run(struct energy *energy, sim_time until, void (*dies)(void *context, uint32_t mote, sim_time at),
+void energy_run(struct energy *energy, sim_time now, void (*dies)(void *context, uint32_t mote, sim_time at),
                 void *context);
 
 bool energy_is_dead(const struct energy *energy, uint32_t mote);
