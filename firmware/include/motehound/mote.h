@@ -64,8 +64,6 @@ struct mh_mote {
     const struct mh_mote_config *config;
     const struct mh_port *port;
     void *port_context;
-    struct mh_protocol_node node;
-    struct mh_sensor sensor;
     bool tracking; /* the network follows a track */
     bool asked;    /* the sample of asked_time is to be reported, whatever it is */
     mh_tick asked_time;
@@ -75,6 +73,8 @@ struct mh_mote {
     bool alarm_set;          /* ... if ever: the earliest of the protocol's, the clock's and the head's */
     bool may_sleep;          /* as last told to the port */
     struct mh_mote_counters counters;
+    struct mh_protocol_node node;
+    struct mh_sensor sensor;
 };
 
 /* Come up. `config`, all it points to, and `port` outlive the mote. Sets the first alarm; may transmit. After an error the mote
