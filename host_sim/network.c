@@ -314,6 +314,15 @@ static int make_radio(struct network *network)
     return result;
 }
 
+static int make_host(struct network *network)
+{
+    const struct roster *roster = network->config.roster;
+    const struct host_provider *hosts = network->config.hosts;
+    const uint32_t *order = radio_order(&network->radio);
+    return hosts ? hosts->open(hosts->context, &network->host, roster->count, order)
+                 : host_in_process(&network->host, roster->count, order, roster->kit.protocol.protocol);
+}
+
 static int bring_up(struct network *network)
 {
     const struct roster *roster = network->config.roster;
@@ -348,8 +357,7 @@ int network_make(struct network *network, const struct network_config *config, c
     *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
     frame_kinds_learn(&network->kinds);
     if (account_open(&network->account, config->scenario, roster->count, roster->count - 1) || make_radio(network) ||
-        host_in_process(&network->host, roster->count, radio_order(&network->radio), roster->kit.protocol.protocol) ||
-        bring_up(network) || schedule_motes(network)) {
+        make_host(network) || bring_up(network) || schedule_motes(network)) {
         snprintf(error, error_size, "out of memory for %u nodes", (unsigned)roster->count);
         network_free(network);
         return -1;

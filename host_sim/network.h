@@ -20,6 +20,7 @@
 struct network_config {
     const struct scenario *scenario;
     const struct roster *roster;
+    const struct host_provider *hosts; /* NULL: the motes live in this process */
     double range_m; /* of the radio */
     uint64_t seed;
     const struct observer *observer;

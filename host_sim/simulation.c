@@ -96,11 +96,13 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
     return run->concentrations && run->counts ? sensors_make(&run->sensors, scenario, seed, nodes) : -1;
 }
 
-static int bring_up(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
+static int bring_up(struct run *run, const struct host_provider *hosts, const struct scenario *scenario, uint64_t seed,
+                    char *error, size_t error_size)
 {
     const bool has_source = scenario->source.path != PATH_NONE;
     const struct network_config config = {.scenario = scenario,
                                           .roster = &run->roster,
+                                          .hosts = hosts,
                                           .range_m = scenario->radio.range_m,
                                           .seed = seed,
                                           .observer = run->observer,
@@ -126,12 +128,12 @@ static void tear_down(struct run *run)
     roster_free(&run->roster);
 }
 
-int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
-                   const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error,
-                   size_t error_size)
+int simulation_run_on(const struct host_provider *hosts, const struct scenario *scenario, uint64_t seed,
+                      const struct observer *observer, const volatile sig_atomic_t *stop,
+                      struct simulation_counters *counters, char *error, size_t error_size)
 {
     struct run run = {.observer = observer};
-    int result = bring_up(&run, scenario, seed, error, error_size);
+    int result = bring_up(&run, hosts, scenario, seed, error, error_size);
     if (result == 0) {
         result = network_run(&run.network, run.end, stop, error, error_size);
         *counters = (struct simulation_counters){.samples = run.next};
@@ -141,4 +143,11 @@ int simulation_run(const struct scenario *scenario, uint64_t seed, const struct 
     }
     tear_down(&run);
     return result;
+}
+
+int simulation_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
+                   const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error,
+                   size_t error_size)
+{
+    return simulation_run_on(NULL, scenario, seed, observer, stop, counters, error, error_size);
 }

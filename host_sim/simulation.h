@@ -63,6 +63,13 @@ int simulation_run(const struct scenario *scenario, uint64_t seed, const struct 
                    const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error,
                    size_t error_size);
 
+struct host_provider;
+
+/* The same with the motes where `hosts` says (hosts/host.h; NULL: in this process). The calls are the same wherever that is. */
+int simulation_run_on(const struct host_provider *hosts, const struct scenario *scenario, uint64_t seed,
+                      const struct observer *observer, const volatile sig_atomic_t *stop,
+                      struct simulation_counters *counters, char *error, size_t error_size);
+
 /* Feed a recording through the same motes: its nodes and readings instead of the scenario's field, deployment and sensor.
  * scenario->sensor.interval_s is the sampling interval (0: recording->interval_s); sampling instants are the first reading's time and
  * whole intervals from it. Times that the observer hears are the recording's. Every node is one hop from the sink. The truth, where the recording has one, is interpolated linearly between

@@ -2,6 +2,7 @@
 #ifndef MOTEHOUND_SIM_BATCH_H
 #define MOTEHOUND_SIM_BATCH_H
 
+#include "hosts/host.h"
 #include "record/results.h"
 #include "scenario/recording.h"
 #include "simulation.h"
@@ -11,6 +12,7 @@ struct batch {
     const struct recording *recording; /* to replay, or NULL to simulate */
     uint64_t seed;                     /* run r has seed + r */
     unsigned runs, jobs;
+    const struct host_provider *hosts; /* of simulated runs; NULL: the motes live in this process; else `jobs` is 1 */
     lcm_t *outside; /* see bus.h; may be NULL */
     const char *version;
     const volatile sig_atomic_t *stop;

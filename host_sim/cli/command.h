@@ -19,6 +19,7 @@ int command_list(struct command *command);
 int command_run(struct command *command);
 int command_replay(struct command *command);
 int command_bench(struct command *command);
+int command_worker(struct command *command);
 
 /* What run and replay have in common: a batch into folder `out`, with progress on a terminal, and a table of results on
  * standard output. Returns as a command does. */
@@ -26,6 +27,9 @@ struct session {
     struct batch batch;
     const char *out;
     const char *bus_url;
+    unsigned workers, joining; /* that host the motes, on bus_url; neither: this process does */
+    bool respawn;
+    double drop_share; /* of the messages to and from workers */
     bool log;
 };
 int session_execute(struct command *command, struct session *session);

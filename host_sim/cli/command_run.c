@@ -11,6 +11,7 @@
 static const char help[] =
     "motehound run SCENARIO [--set key=value]... [--runs N] [--seed S] [--jobs J] [--out DIR] [--bus URL] [--log] "
     "[--sweep]\n"
+    "              [--workers N] [--join N] [--respawn]\n"
     "\n"
     "Simulates a network of motes. SCENARIO is a YAML file or a name of `motehound list`.\n"
     "  --set key=value  change any key of the scenario (`motehound list --keys`); may be repeated\n"
@@ -22,23 +23,39 @@ static const char help[] =
     "                   default memq://, which stays within the process\n"
     "  --log            also write events.lcm, all that went over the bus, for lcm-logplayer\n"
     "  --sweep          do all runs for each value of the scenario's `sweep`, into DIR/VALUE\n"
+    "  --workers N      let the motes live in N other processes of this machine, over --bus URL\n"
+    "  --join N         wait for N workers more, started elsewhere with `motehound worker --bus URL`\n"
+    "  --respawn        replace a worker that dies (it repeats all that was done), instead of ending the run\n"
+    "  --drop-share P   for tests: drop this share of the messages to and from the workers\n"
     "  --help           this text\n"
     "\n"
+    "The results do not depend on where the motes live (docs/workers.md).\n"
     "DIR gets summary.json, runs.csv, track.csv, nodes.csv and scenario.json; whole, or after an error or an\n"
     "interrupt not at all (with --sweep: each DIR/VALUE).\n";
 
 struct run_options {
     const char *scenario, *out, *bus_url;
-    uint64_t runs, seed, jobs;
-    bool log, sweep, help;
+    uint64_t runs, seed, jobs, workers, joining;
+    double drop_share;
+    bool log, sweep, respawn, help;
 };
 
-enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, HELP, RULES };
+enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, WORKERS, JOIN, RESPAWN, DROP_SHARE, HELP, RULES };
 
 static const struct option_rule rules[RULES] = {
-    [SET] = {"--set", true, true},    [RUNS] = {"--runs", true, false},    [SEED] = {"--seed", true, false},
-    [JOBS] = {"--jobs", true, false}, [OUT] = {"--out", true, false},      [BUS] = {"--bus", true, false},
-    [LOG] = {"--log", false, false},  [SWEEP] = {"--sweep", false, false}, [HELP] = {"--help", false, false},
+    [SET] = {"--set", true, true},
+    [RUNS] = {"--runs", true, false},
+    [SEED] = {"--seed", true, false},
+    [JOBS] = {"--jobs", true, false},
+    [OUT] = {"--out", true, false},
+    [BUS] = {"--bus", true, false},
+    [LOG] = {"--log", false, false},
+    [SWEEP] = {"--sweep", false, false},
+    [WORKERS] = {"--workers", true, false},
+    [JOIN] = {"--join", true, false},
+    [RESPAWN] = {"--respawn", false, false},
+    [DROP_SHARE] = {"--drop-share", true, false},
+    [HELP] = {"--help", false, false},
 };
 
 /* All options but --set, whose values wait until the file has been read. */
@@ -85,6 +102,18 @@ static int read_options(struct command *command, struct run_options *options)
         case SWEEP:
             options->sweep = true;
             break;
+        case WORKERS:
+            status = option_count("--workers", value, 1, 64, &options->workers, error, COMMAND_ERROR_SIZE);
+            break;
+        case JOIN:
+            status = option_count("--join", value, 1, 64, &options->joining, error, COMMAND_ERROR_SIZE);
+            break;
+        case RESPAWN:
+            options->respawn = true;
+            break;
+        case DROP_SHARE:
+            status = option_share("--drop-share", value, &options->drop_share, error, COMMAND_ERROR_SIZE);
+            break;
         case HELP:
             options->help = true;
             break;
@@ -98,6 +127,10 @@ static int read_options(struct command *command, struct run_options *options)
     if (options->scenario == NULL && !options->help) {
         return fail(error, COMMAND_ERROR_SIZE,
                     "motehound run: expected a scenario, found nothing; see motehound run --help");
+    }
+    if (options->workers + options->joining > 0 && options->jobs > 1) {
+        return fail(error, COMMAND_ERROR_SIZE, "--workers: expected one run at a time, found --jobs %llu",
+                    (unsigned long long)options->jobs);
     }
     return 0;
 }
@@ -198,6 +231,10 @@ int command_run(struct command *command)
                   .stop = command->stop},
         .out = options.out != NULL ? options.out : command_folder("out", scenario.name, out),
         .bus_url = options.bus_url,
+        .workers = (unsigned)options.workers,
+        .joining = (unsigned)options.joining,
+        .respawn = options.respawn,
+        .drop_share = options.drop_share,
         .log = options.log,
     };
     const int status = options.sweep ? sweep(command, &session, &scenario, path) : session_execute(command, &session);

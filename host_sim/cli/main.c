@@ -7,13 +7,14 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char help[] = "motehound list | run | replay | bench [OPTIONS]\n"
+static const char help[] = "motehound list | run | replay | bench | worker [OPTIONS]\n"
                            "\n"
                            "Tracks a moving or hidden source with a simulated or recorded network of sensor motes.\n"
                            "  motehound list     scenarios, trackers and keys\n"
                            "  motehound run      simulate a scenario\n"
                            "  motehound replay   feed a recording through the same motes\n"
                            "  motehound bench    measure what simulating costs\n"
+                           "  motehound worker   host motes of a run that another process leads\n"
                            "  motehound COMMAND --help; motehound --version\n";
 
 /* The one global: a signal handler can reach nothing else. */
@@ -39,6 +40,9 @@ static int dispatch(const char *name, struct command *command)
     if (strcmp(name, "bench") == 0) {
         return command_bench(command);
     }
+    if (strcmp(name, "worker") == 0) {
+        return command_worker(command);
+    }
     if (strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
         fputs(help, stdout);
         return 0;
@@ -48,7 +52,7 @@ static int dispatch(const char *name, struct command *command)
         return 0;
     }
     fail(command->error, sizeof command->error,
-         "motehound: expected list, run, replay or bench, found '%.100s'; see motehound --help", name);
+         "motehound: expected list, run, replay, bench or worker, found '%.100s'; see motehound --help", name);
     return 1;
 }
 

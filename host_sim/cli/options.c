@@ -64,3 +64,13 @@ int option_count(const char *name, const char *value, uint64_t minimum, uint64_t
     *count = number;
     return 0;
 }
+
+int option_share(const char *name, const char *value, double *share, char *error, size_t error_size)
+{
+    double number;
+    if (!text_number(value, strlen(value), &number) || number < 0 || number >= 1) {
+        return fail(error, error_size, "%s: expected a number from 0 to below 1, found '%.100s'", name, value);
+    }
+    *share = number;
+    return 0;
+}

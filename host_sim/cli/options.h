@@ -32,4 +32,7 @@ enum option_kind option_next(struct option_reader *reader, size_t *rule, const c
 int option_count(const char *name, const char *value, uint64_t minimum, uint64_t maximum, uint64_t *count, char *error,
                  size_t error_size);
 
+/* A number from 0 to below 1. Returns as option_count. */
+int option_share(const char *name, const char *value, double *share, char *error, size_t error_size);
+
 #endif

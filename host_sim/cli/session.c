@@ -2,6 +2,7 @@
 
 #include "bus/bus.h"
 #include "cli/progress.h"
+#include "cli/workers.h"
 #include "scenario/text.h"
 
 #include <ctype.h>
@@ -75,11 +76,44 @@ static void put_table(const struct session *session, struct results *results)
     }
 }
 
+static int execute(struct session *session, struct results *results, char *error)
+{
+    struct progress progress;
+    progress_begin(&progress);
+    session->batch.progress = progress_show;
+    session->batch.progress_context = &progress;
+    const int status = batch_execute(&session->batch, results, error, COMMAND_ERROR_SIZE);
+    progress_end(&progress);
+    return status;
+}
+
+static int execute_on_workers(struct session *session, struct results *results, char *error)
+{
+    const struct worker_pool_config config = {.url = session->bus_url,
+                                              .version = session->batch.version,
+                                              .program = "/proc/self/exe",
+                                              .local = session->workers,
+                                              .joining = session->joining,
+                                              .respawn = session->respawn,
+                                              .drop_share = session->drop_share,
+                                              .stop = session->batch.stop};
+    struct workers workers;
+    if (workers_open(&workers, &config, session->batch.scenario, error, COMMAND_ERROR_SIZE) != 0) {
+        return -1;
+    }
+    session->batch.hosts = &workers.provider;
+    const int status = execute(session, results, error);
+    if (status == 0) {
+        workers_report(&workers);
+    }
+    workers_close(&workers);
+    return status;
+}
+
 int session_execute(struct command *command, struct session *session)
 {
     char *error = command->error;
     struct results results;
-    struct progress progress;
     const struct scenario *simulated = session->batch.recording == NULL ? session->batch.scenario : NULL;
     if (results_open(&results, session->out, session->batch.scenario->name, simulated, session->batch.seed,
                      session->log, error, COMMAND_ERROR_SIZE) != 0) {
@@ -87,11 +121,8 @@ int session_execute(struct command *command, struct session *session)
     }
     int status = bus_outside(session->bus_url, &session->batch.outside, error, COMMAND_ERROR_SIZE);
     if (status == 0) {
-        progress_begin(&progress);
-        session->batch.progress = progress_show;
-        session->batch.progress_context = &progress;
-        status = batch_execute(&session->batch, &results, error, COMMAND_ERROR_SIZE);
-        progress_end(&progress);
+        status = session->workers + session->joining > 0 ? execute_on_workers(session, &results, error)
+                                                         : execute(session, &results, error);
     }
     if (session->batch.outside != NULL) {
         lcm_destroy(session->batch.outside);

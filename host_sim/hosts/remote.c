@@ -91,12 +91,12 @@ static int await(struct remote *remote, char *error, size_t error_size)
 
 /* ---- requests ---- */
 
-#define REQUEST(remote, worker, kind, name, message, error, error_size)                                                \
+#define REQUEST(remote, share, kind, name, message, error, error_size)                                                 \
     do {                                                                                                               \
         size_t size;                                                                                                   \
-        worker_pool_address((remote)->pool, worker, &(message).session, &(message).worker, &(message).number);         \
+        worker_pool_address((remote)->pool, share, &(message).session, &(message).worker, &(message).number);          \
         uint8_t *bytes = worker_encode_##name(&(message), &size);                                                      \
-        if (worker_pool_request((remote)->pool, worker, kind, bytes, size, error, error_size) != 0) {                  \
+        if (worker_pool_request((remote)->pool, share, kind, bytes, size, error, error_size) != 0) {                   \
             return -1;                                                                                                 \
         }                                                                                                              \
     } while (0)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -38,6 +39,7 @@ struct member {
     size_t request_count, request_capacity, current;
     int64_t number; /* of the last request */
     bool is_open;   /* the last request has not been answered */
+    int64_t died_at; /* request at which a predecessor of the worker died */
     double asked_s, sent_s, repeat_s;
 };
 
@@ -350,9 +352,10 @@ static int lose(struct worker_pool *pool, struct member *member, const char *how
     char reason[400];
     snprintf(reason, sizeof reason, "worker %.90s %s%s", member->name, how,
              pool->config.respawn ? "" : "; --respawn replaces such workers");
-    if (!pool->config.respawn || !member->joined) {
-        return give_up(pool, reason);
+    if (!pool->config.respawn || !member->joined || member->died_at == member->number) {
+        return give_up(pool, reason); /* one that has died of a request lets its replacement die too */
     }
+    member->died_at = member->number;
     pool->statistics.replaced++;
     member->joined = false;
     return 0;
