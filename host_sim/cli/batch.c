@@ -45,10 +45,10 @@ static bool execute(const struct work *work, unsigned run, struct slot *slot)
     } else {
         const struct observer observer = bus_observer(&bus);
         bus_begin(&bus, seed, batch->scenario->name, batch->version);
-        sound = (batch->recording == NULL
-                     ? simulation_run_on(batch->hosts, batch->scenario, seed, &observer, batch->stop, &counters, slot->error, ERROR_SIZE)
-                     : simulation_replay(batch->scenario, batch->recording, seed, &observer, batch->stop, &counters,
-                                         slot->error, ERROR_SIZE)) == 0;
+        sound = (batch->recording == NULL ? simulation_run_on(batch->hosts, batch->scenario, seed, &observer,
+                                                              batch->stop, &counters, slot->error, ERROR_SIZE)
+                                          : simulation_replay(batch->scenario, batch->recording, seed, &observer,
+                                                              batch->stop, &counters, slot->error, ERROR_SIZE)) == 0;
         if (sound) {
             bus_end(&bus, &counters);
         }

@@ -13,7 +13,7 @@ struct batch {
     uint64_t seed;                     /* run r has seed + r */
     unsigned runs, jobs;
     const struct host_provider *hosts; /* of simulated runs; NULL: the motes live in this process; else `jobs` is 1 */
-    lcm_t *outside; /* see bus.h; may be NULL */
+    lcm_t *outside;                    /* see bus.h; may be NULL */
     const char *version;
     const volatile sig_atomic_t *stop;
     /* Called from the calling thread when a run's results are in, and some times a second. May be NULL. */

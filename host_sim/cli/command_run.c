@@ -43,18 +43,12 @@ struct run_options {
 enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, WORKERS, JOIN, RESPAWN, DROP_SHARE, HELP, RULES };
 
 static const struct option_rule rules[RULES] = {
-    [SET] = {"--set", true, true},
-    [RUNS] = {"--runs", true, false},
-    [SEED] = {"--seed", true, false},
-    [JOBS] = {"--jobs", true, false},
-    [OUT] = {"--out", true, false},
-    [BUS] = {"--bus", true, false},
-    [LOG] = {"--log", false, false},
-    [SWEEP] = {"--sweep", false, false},
-    [WORKERS] = {"--workers", true, false},
-    [JOIN] = {"--join", true, false},
-    [RESPAWN] = {"--respawn", false, false},
-    [DROP_SHARE] = {"--drop-share", true, false},
+    [SET] = {"--set", true, true},           [RUNS] = {"--runs", true, false},
+    [SEED] = {"--seed", true, false},        [JOBS] = {"--jobs", true, false},
+    [OUT] = {"--out", true, false},          [BUS] = {"--bus", true, false},
+    [LOG] = {"--log", false, false},         [SWEEP] = {"--sweep", false, false},
+    [WORKERS] = {"--workers", true, false},  [JOIN] = {"--join", true, false},
+    [RESPAWN] = {"--respawn", false, false}, [DROP_SHARE] = {"--drop-share", true, false},
     [HELP] = {"--help", false, false},
 };
 

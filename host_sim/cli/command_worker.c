@@ -25,10 +25,8 @@ enum { BUS, SESSION, KEY, DROP_SHARE, HELP, RULES };
 
 /* --session and --key are how `motehound run` tells its own workers who they are, with a pipe as their standard input. */
 static const struct option_rule rules[RULES] = {
-    [BUS] = {"--bus", true, false},
-    [SESSION] = {"--session", true, false},
-    [KEY] = {"--key", true, false},
-    [DROP_SHARE] = {"--drop-share", true, false},
+    [BUS] = {"--bus", true, false},    [SESSION] = {"--session", true, false},
+    [KEY] = {"--key", true, false},    [DROP_SHARE] = {"--drop-share", true, false},
     [HELP] = {"--help", false, false},
 };
 

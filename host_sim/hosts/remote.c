@@ -55,7 +55,7 @@ static int on_done(void *context, unsigned worker, const motehound_worker_done_t
 
 static int add_counters(void *to, size_t size, const int64_t *from, int32_t count, char *error, size_t error_size)
 {
-    uint32_t counters[64];
+    uint32_t counters[64] = {0};
     if ((size_t)count * sizeof counters[0] != size || size > sizeof counters) {
         return fail(error, error_size, "a worker counts %ld things, expected %zu", (long)count,
                     size / sizeof counters[0]);

@@ -37,8 +37,8 @@ struct member {
      * catches up. */
     struct request *requests;
     size_t request_count, request_capacity, current;
-    int64_t number; /* of the last request */
-    bool is_open;   /* the last request has not been answered */
+    int64_t number;  /* of the last request */
+    bool is_open;    /* the last request has not been answered */
     int64_t died_at; /* request at which a predecessor of the worker died */
     double asked_s, sent_s, repeat_s;
 };

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 /* Awake for so long: several times what an answer takes when nothing is in its way. */
-static const double awake_s = 200e-6;
+static const double awake_s = 50e-6;
 
 /* ---- the link ---- */
 

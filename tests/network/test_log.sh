@@ -21,12 +21,10 @@ accepted "${run[@]}" --log --runs 3 --jobs 2 --out thrice
 [ "$(of RUN_END read3.txt)" = 3 ] || complain "three runs: $(cat read3.txt)"
 [ $failures -eq 0 ] || exit 1
 
-for program in lcm-logger lcm-logplayer unshare ip; do
+for program in lcm-logger lcm-logplayer; do
     command -v $program >/dev/null || { echo "skipped: no $program"; exit 77; }
 done
-# Root may make a network namespace anywhere, others within a user namespace of their own.
-own_network() { if unshare -n true 2>/dev/null; then unshare -n "$@"; else unshare -rn "$@"; fi; }
-own_network sh -c 'ip link set lo up && ip route add 224.0.0.0/4 dev lo' 2>/dev/null || { echo "skipped: no network namespace may be made"; exit 77; }
+. "$(dirname "$0")/own_network.sh"
 
 # In a network of our own: $1 while lcm-logger writes $2.
 beside_logger() {
