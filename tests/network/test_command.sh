@@ -14,8 +14,8 @@ accepted "$MOTEHOUND" --help
 for command in list run replay bench; do accepted "$MOTEHOUND" $command --help; done
 
 # words
-refused 'expected list, run, replay or bench' "$MOTEHOUND"
-refused "expected list, run, replay or bench, found 'walk'" "$MOTEHOUND" walk
+refused 'expected list, run, replay, bench or worker' "$MOTEHOUND"
+refused "expected list, run, replay, bench or worker, found 'walk'" "$MOTEHOUND" walk
 refused "unknown option '--run'" "$MOTEHOUND" run luo_exp1 --run 3
 refused 'expected a scenario, found nothing' "$MOTEHOUND" run
 refused "found 'luo_exp2' too" "$MOTEHOUND" run luo_exp1 luo_exp2
