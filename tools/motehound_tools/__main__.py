@@ -52,6 +52,12 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("--to", required=True, choices=["csv", "mcap", "rerun"])
     export.add_argument("out", type=Path, metavar="OUT", help="a file; for csv a folder, one file a channel")
 
+    view = commands.add_parser("view", help="a page on localhost that shows an LCM log, or what is on the bus")
+    shown = view.add_mutually_exclusive_group(required=True)
+    shown.add_argument("log", type=Path, nargs="?", metavar="LOG.lcm")
+    shown.add_argument("--bus", metavar="URL", help="such as udpm://239.255.76.67:7667?ttl=0")
+    view.add_argument("--port", type=int, default=5006, help="0: any that is free (%(default)s)")
+
     for one in (sweep, results, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
     return top
@@ -107,6 +113,13 @@ def perform(arguments: argparse.Namespace) -> None:
         from . import export
 
         print(f"{arguments.out}: {export.write(arguments.log, arguments.to, arguments.out)}")
+    elif arguments.command == "view":
+        from . import recording, view
+
+        if not 0 <= arguments.port < 65536:
+            raise Failure(f"--port {arguments.port}: expected 0 to 65535")
+        found = recording.of_log(arguments.log) if arguments.log else recording.of_bus(arguments.bus)
+        view.serve(found, live=arguments.log is None, port=arguments.port)
     elif arguments.command == "bound":
         from . import bound
         from .scenario import Scenario

@@ -1,0 +1,156 @@
+"""What there is to see of a run at one time: columns ready to be drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .recording import Run
+
+FRAMES_MAX = 1500  # drawn at once; the newest ones
+STALE = 5  # sampling intervals after which an estimate is no longer where the source is
+ELLIPSE = np.linspace(0.0, 2.0 * np.pi, 49)
+ELLIPSE_SD = 2.0
+BEND = 0.18  # of an arc, as a share of its length
+
+
+class Motes:
+    """The motes of a run, and what each has told and sent until a time that moves."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.nodes = np.array(sorted(run.places), dtype=np.int64)
+        self.xy = np.array([run.places[node] for node in self.nodes]).reshape(-1, 2)
+        self.spacing = 1.0
+        if len(self.nodes) > 1:
+            nearest = cKDTree(self.xy).query(self.xy, k=2)[0][:, 1]
+            self.spacing = max(float(np.median(nearest)), 1e-6)
+        self.reset()
+
+    def reset(self) -> None:
+        count = len(self.nodes)
+        self.time = -1.0
+        self.frames_seen = self.told_seen = 0
+        self.sent = np.zeros(count)
+        self.sent_of_kind = np.zeros(256, dtype=np.int64)
+        self.energy, self.battery, self.clock_error = (np.full(count, np.nan) for _ in range(3))
+        self.alive = np.ones(count, dtype=bool)
+
+    def index(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where these nodes are in the arrays, and which of them are known at all."""
+        if not len(self.nodes):
+            return np.zeros(len(nodes), dtype=np.int64), np.zeros(len(nodes), dtype=bool)
+        at = np.minimum(np.searchsorted(self.nodes, nodes), len(self.nodes) - 1)
+        return at, self.nodes[at] == nodes
+
+    def move(self, time: float) -> None:
+        """Forward costs what happened since; backward begins anew."""
+        if time < self.time:
+            self.reset()
+        self.time = time
+        frames = self.run.frames.until(time)
+        at, known = self.index(frames["sender"][self.frames_seen :])
+        self.sent += np.bincount(at[known], minlength=len(self.nodes))
+        self.sent_of_kind += np.bincount(frames["kind"][self.frames_seen :], minlength=256)
+        self.frames_seen = len(frames)
+        told = self.run.motes.until(time)
+        new = told[self.told_seen :]
+        at, known = self.index(new["node"])
+        at, new = at[known], new[known]
+        for name in ("energy", "battery", "alive", "clock_error"):
+            getattr(self, name)[at] = new[name]  # of several, the last stays
+        self.told_seen = len(told)
+
+
+def frames_in_air(run: Run, motes: Motes, time: float, linger: float, colours: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+    """Frames that went on the air within `linger` before: an arc to the addressee, a ring around who broadcasts. What they were
+    sent by and for fades over that time; on the air they are much shorter."""
+    frames = run.frames.between(time - linger, time)[-FRAMES_MAX:]
+    sender, known = motes.index(frames["sender"])
+    frames, sender = frames[known], sender[known]
+    destination, addressed = motes.index(frames["destination"])
+    age = np.clip((time - frames["time"]) / linger, 0.0, 1.0)
+    colour = colours[frames["kind"]]
+    alpha = (1.0 - age) ** 1.5
+    begin, end = motes.xy[sender[addressed]], motes.xy[destination[addressed]]
+    across = (end - begin)[:, ::-1] * (-1.0, 1.0)
+    middle = (begin + end) / 2.0 + BEND * across
+    share = np.minimum(1.0, 1.6 * age[addressed])[:, None]  # of the way that its pulse has gone
+    pulse = (1 - share) ** 2 * begin + 2 * share * (1 - share) * middle + share**2 * end
+    ring = ~addressed
+    centre = motes.xy[sender[ring]]
+    return {
+        "arcs": {
+            **dict(zip(("x0", "y0"), begin.T)),
+            **dict(zip(("cx", "cy"), middle.T)),
+            **dict(zip(("x1", "y1"), end.T)),
+            "alpha": 0.75 * alpha[addressed],
+            "color": colour[addressed],
+        },
+        "pulses": {"x": pulse[:, 0], "y": pulse[:, 1], "alpha": np.sqrt(alpha[addressed]), "color": colour[addressed]},
+        "rings": {
+            "x": centre[:, 0],
+            "y": centre[:, 1],
+            "radius": motes.spacing * (0.4 + 1.8 * np.sqrt(age[ring])),
+            "alpha": alpha[ring],
+            "color": colour[ring],
+        },
+    }
+
+
+def truth(run: Run, time: float) -> tuple[dict[str, np.ndarray], tuple[float, float] | None]:
+    """The path so far and where the source is now, between two samples on the line that joins them."""
+    past = run.truth.until(time)
+    past = past[past["present"]]
+    path = {"x": past["x"], "y": past["y"]}
+    if not len(past):
+        return path, None
+    rows = run.truth.snapshot()
+    after = rows[len(run.truth.until(time)) :][:1]
+    last = past[-1]
+    if not len(after):
+        return path, (last["x"], last["y"]) if time - last["time"] < 1.0 else None
+    if not after["present"][0]:
+        return path, None
+    share = (time - last["time"]) / max(float(after["time"][0] - last["time"]), 1e-9)
+    now = tuple(float(last[axis] + share * (after[axis][0] - last[axis])) for axis in ("x", "y"))
+    return {axis: np.append(path[axis], value) for axis, value in zip(("x", "y"), now)}, now
+
+
+def track(run: Run, time: float) -> dict[str, dict[str, list]]:
+    """Of every target the path of the estimates, the newest of them and its ellipse of two standard deviations."""
+    rows = run.track.until(time)
+    paths: dict[str, list] = {"xs": [], "ys": []}
+    ellipses: dict[str, list] = {"xs": [], "ys": []}
+    heads: dict[str, list] = {"x": [], "y": [], "error": []}
+    for target in np.unique(rows["target"]):
+        mine = rows[rows["target"] == target]
+        paths["xs"].append(mine["x"])
+        paths["ys"].append(mine["y"])
+        newest = mine[-1]
+        interval = float(np.median(np.diff(mine["time"][-STALE:]))) if len(mine) > 1 else 1.0
+        if time - newest["time"] > STALE * interval:
+            continue
+        for name in heads:
+            heads[name].append(float(newest[name]))
+        covariance = np.array([[newest["xx"], newest["xy"]], [newest["xy"], newest["yy"]]])
+        if np.isfinite(covariance).all():
+            values, vectors = np.linalg.eigh(covariance)
+            around = ELLIPSE_SD * np.sqrt(np.maximum(values, 0.0))[:, None] * np.array([np.cos(ELLIPSE), np.sin(ELLIPSE)])
+            x, y = vectors @ around
+            ellipses["xs"].append(newest["x"] + x)
+            ellipses["ys"].append(newest["y"] + y)
+    return {"paths": paths, "ellipses": ellipses, "heads": heads}
+
+
+def timeline(run: Run, bins: int = 240) -> dict[str, dict[str, np.ndarray]]:
+    """Over the whole run: frames a second, and the error of each estimate."""
+    end = max(run.end_s, 1e-3)
+    count, edges = np.histogram(run.frames.snapshot()["time"], bins=bins, range=(0.0, end))
+    tracks = run.track.snapshot()
+    known = tracks[np.isfinite(tracks["error"])]
+    known = known[:: max(1, len(known) // 2000)]
+    return {
+        "traffic": {"time": (edges[1:] + edges[:-1]) / 2.0, "rate": count / (edges[1] - edges[0])},
+        "error": {"time": known["time"], "error": known["error"]},
+    }
