@@ -75,9 +75,7 @@ class Run:
         self.track = Table(
             [("target", "i4"), *((name, "f8") for name in ("x", "y", "xx", "xy", "yy", "true_x", "true_y", "error"))]
         )
-        self.motes = Table(
-            [("node", "i4"), ("energy", "f8"), ("battery", "f8"), ("alive", "?"), ("clock_error", "f8")]
-        )
+        self.motes = Table([("node", "i4"), ("energy", "f8"), ("battery", "f8"), ("alive", "?"), ("clock_error", "f8")])
 
 
 class Recording:
@@ -158,6 +156,7 @@ def of_log(path: Path) -> Recording:
             recording.take(event.data)
             recording.share = log.share
         recording.broken += log.broken
+        recording.share = 1.0
 
     threading.Thread(target=read, daemon=True, name="log").start()
     return recording

@@ -62,7 +62,9 @@ class Motes:
         self.told_seen = len(told)
 
 
-def frames_in_air(run: Run, motes: Motes, time: float, linger: float, colours: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+def frames_in_air(
+    run: Run, motes: Motes, time: float, linger: float, colours: np.ndarray
+) -> dict[str, dict[str, np.ndarray]]:
     """Frames that went on the air within `linger` before: an arc to the addressee, a ring around who broadcasts. What they were
     sent by and for fades over that time; on the air they are much shorter."""
     frames = run.frames.between(time - linger, time)[-FRAMES_MAX:]
@@ -136,7 +138,9 @@ def track(run: Run, time: float) -> dict[str, dict[str, list]]:
         covariance = np.array([[newest["xx"], newest["xy"]], [newest["xy"], newest["yy"]]])
         if np.isfinite(covariance).all():
             values, vectors = np.linalg.eigh(covariance)
-            around = ELLIPSE_SD * np.sqrt(np.maximum(values, 0.0))[:, None] * np.array([np.cos(ELLIPSE), np.sin(ELLIPSE)])
+            around = (
+                ELLIPSE_SD * np.sqrt(np.maximum(values, 0.0))[:, None] * np.array([np.cos(ELLIPSE), np.sin(ELLIPSE)])
+            )
             x, y = vectors @ around
             ellipses["xs"].append(newest["x"] + x)
             ellipses["ys"].append(newest["y"] + y)

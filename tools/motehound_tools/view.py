@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import logging
 import math
+import os
 import signal
 import socket
 import time as clock
@@ -126,15 +127,24 @@ class Page:
         self.build_timeline()
         widget = {"stylesheets": [WIDGETS], "sizing_mode": "stretch_width"}
         playing = argument(self.doc, "play") != "0" and not self.live
-        self.play = Toggle(label="Pause" if playing else "Play", active=playing, name="play", width=90, stylesheets=[WIDGETS])
-        self.follow = Toggle(label="Live", active=self.live, name="follow", width=90, visible=self.live, stylesheets=[WIDGETS])
+        self.play = Toggle(
+            label="Pause" if playing else "Play", active=playing, name="play", width=90, stylesheets=[WIDGETS]
+        )
+        self.follow = Toggle(
+            label="Live", active=self.live, name="follow", width=90, visible=self.live, stylesheets=[WIDGETS]
+        )
         speeds = [(str(speed), f"{speed:g} × real time") for speed in SPEEDS]
         self.speed = Select(value="1.0", options=speeds, name="speed", width=140, stylesheets=[WIDGETS])
         self.slider = Slider(start=0.0, end=1.0, value=0.0, step=0.01, show_value=False, name="slider", **widget)
         self.runs = Select(options=[], name="runs", **widget)
         self.shade = Select(
             title="Motes are coloured by",
-            options=[("sent", "frames sent"), ("battery", "battery left"), ("energy", "energy spent"), ("clock_error", "clock error")],
+            options=[
+                ("sent", "frames sent"),
+                ("battery", "battery left"),
+                ("energy", "energy spent"),
+                ("clock_error", "clock error"),
+            ],
             value="sent",
             name="shade",
             **widget,
@@ -162,7 +172,12 @@ class Page:
         )
         # What moves is drawn on a figure of its own over the motes, which are many and seldom change.
         self.over = over = figure(
-            name="over", sizing_mode="stretch_both", toolbar_location=None, tools="", x_range=Range1d(0.0, 1.0), y_range=Range1d(0.0, 1.0)
+            name="over",
+            sizing_mode="stretch_both",
+            toolbar_location=None,
+            tools="",
+            x_range=Range1d(0.0, 1.0),
+            y_range=Range1d(0.0, 1.0),
         )
         for one in (plot, over):
             one.min_border_left, one.min_border_right, one.min_border_top, one.min_border_bottom = 65, 85, 8, 48
@@ -202,18 +217,38 @@ class Page:
             line_color="color", line_alpha="alpha", line_width=1.8,
         )  # fmt: skip
         pulses = over.scatter(
-            "x", "y", source=self.source("pulses", "x", "y", "alpha", "color"), size=7, color="color", line_color=None, alpha="alpha"
+            "x",
+            "y",
+            source=self.source("pulses", "x", "y", "alpha", "color"),
+            size=7,
+            color="color",
+            line_color=None,
+            alpha="alpha",
         )
-        truth = over.line("x", "y", source=self.source("truth", "x", "y"), line_color=TRUTH, line_width=5, line_alpha=0.55)
+        truth = over.line(
+            "x", "y", source=self.source("truth", "x", "y"), line_color=TRUTH, line_width=5, line_alpha=0.55
+        )
         here = over.scatter(
             "x", "y", source=self.source("here", "x", "y"), size=18, fill_color=None, line_color=TRUTH, line_width=3
         )
         path = over.multi_line("xs", "ys", source=self.source("paths", "xs", "ys"), line_color=TRACK, line_width=2)
         ellipse = over.patches(
-            "xs", "ys", source=self.source("ellipses", "xs", "ys"), fill_color=TRACK, fill_alpha=0.15, line_color=TRACK, line_width=1.5
+            "xs",
+            "ys",
+            source=self.source("ellipses", "xs", "ys"),
+            fill_color=TRACK,
+            fill_alpha=0.15,
+            line_color=TRACK,
+            line_width=1.5,
         )
         head = over.scatter(
-            "x", "y", source=self.source("heads", "x", "y", "error"), size=10, color=TRACK, line_color="white", line_width=1.5
+            "x",
+            "y",
+            source=self.source("heads", "x", "y", "error"),
+            size=10,
+            color=TRACK,
+            line_color="white",
+            line_width=1.5,
         )
         plot.x_range.renderers = plot.y_range.renderers = [motes]
         plot.x_range.range_padding = plot.y_range.range_padding = 0.1
@@ -259,13 +294,25 @@ class Page:
             y_axis_label="frames/s",
         )
         self.ink(plot)
-        self.source("traffic", "time", "rate").data = {"time": [0.0, 1.0], "rate": [0.0, 0.0]}  # Bokeh never ends to draw steps of nothing
-        plot.varea_step("time", 0, "rate", step_mode="center", source=self.sources["traffic"], fill_color="#648fff", fill_alpha=0.35)
+        self.source("traffic", "time", "rate").data = {
+            "time": [0.0, 1.0],
+            "rate": [0.0, 0.0],
+        }  # Bokeh never ends to draw steps of nothing
+        plot.varea_step(
+            "time", 0, "rate", step_mode="center", source=self.sources["traffic"], fill_color="#648fff", fill_alpha=0.35
+        )
         plot.extra_y_ranges = {"error": Range1d(0.0, 1.0)}
         right = LinearAxis(y_range_name="error", axis_label="error, m")
         plot.add_layout(right, "right")
         self.ink(plot)
-        plot.line("time", "error", source=self.source("error", "time", "error"), y_range_name="error", line_color=TRACK, line_width=1.5)
+        plot.line(
+            "time",
+            "error",
+            source=self.source("error", "time", "error"),
+            y_range_name="error",
+            line_color=TRACK,
+            line_width=1.5,
+        )
         self.cursor = Span(location=0.0, dimension="height", line_color=INK, line_width=2)
         plot.add_layout(self.cursor)
         plot.on_event(Tap, lambda event: self.seek(event.x))
@@ -282,11 +329,34 @@ class Page:
 
     def place(self) -> None:
         self.doc.title = "Motehound"
-        self.doc.template = Environment(loader=PackageLoader("motehound_tools"), autoescape=True).get_template("view.html.j2")
-        self.doc.template_variables.update(
-            name=self.recording.name, live=self.live, colours={"track": TRACK, "truth": TRUTH, "dead": DEAD, "unicasts": KIND_COLOURS["report"], "broadcasts": KIND_COLOURS["beacon"], "motes": MAP_COLOURS[80]}
+        self.doc.template = Environment(loader=PackageLoader("motehound_tools"), autoescape=True).get_template(
+            "view.html.j2"
         )
-        for root in (self.map, self.over, self.chart, self.play, self.follow, self.speed, self.slider, self.runs, self.shade, self.counters, self.status):
+        self.doc.template_variables.update(
+            name=self.recording.name,
+            live=self.live,
+            colours={
+                "track": TRACK,
+                "truth": TRUTH,
+                "dead": DEAD,
+                "unicasts": KIND_COLOURS["report"],
+                "broadcasts": KIND_COLOURS["beacon"],
+                "motes": MAP_COLOURS[80],
+            },
+        )
+        for root in (
+            self.map,
+            self.over,
+            self.chart,
+            self.play,
+            self.follow,
+            self.speed,
+            self.slider,
+            self.runs,
+            self.shade,
+            self.counters,
+            self.status,
+        ):
             self.doc.add_root(root)
 
     # what the user does
@@ -336,7 +406,9 @@ class Page:
         now = clock.monotonic()
         passed, self.clock = min(now - self.clock, 0.5), now
         speed = float(self.speed.value)
-        if self.wanted_time and (self.end() >= self.wanted_time or (self.run is not None and self.recording.share >= 1.0)):
+        if self.wanted_time and (
+            self.end() >= self.wanted_time or (self.run is not None and self.recording.share >= 1.0)
+        ):
             self.time, self.wanted_time = min(self.wanted_time, self.end()), 0.0
         if self.follow.active:
             newest = self.recording.runs.get(self.recording.newest)
@@ -355,7 +427,12 @@ class Page:
 
     def tick(self) -> None:
         runs = self.recording.runs
-        if self.run is not None and runs.get(self.run.number) is not self.run and self.run.number in runs and not self.follow.active:
+        if (
+            self.run is not None
+            and runs.get(self.run.number) is not self.run
+            and self.run.number in runs
+            and not self.follow.active
+        ):
             self.show(runs[self.run.number])
         if self.run is None and runs:
             wanted = int(self.wanted_run) if (self.wanted_run or "").isdigit() else min(runs)
@@ -398,7 +475,11 @@ class Page:
             colours = np.array([colour_of(kind) for kind in self.recording.kinds] or [OTHER_COLOUR])
             self.air = scene.frames_in_air(run, self.motes, time, LINGER_S * speed, colours)
             for name, data in self.air.items():
-                if len(next(iter(data.values()))) or self.sources[name].data and len(next(iter(self.sources[name].data.values()))):
+                if (
+                    len(next(iter(data.values())))
+                    or self.sources[name].data
+                    and len(next(iter(self.sources[name].data.values())))
+                ):
                     self.put(name, data)
             path, here = scene.truth(run, time)
             self.put("truth", path)
@@ -411,14 +492,23 @@ class Page:
             self.draw_slow()
 
     def draw_widgets(self) -> None:
-        options = [(str(n), f"Run {n}" + (f" · seed {r.seed}" if r.seed is not None else "")) for n, r in sorted(self.recording.runs.items())]
+        options = [
+            (str(n), f"Run {n}" + (f" · seed {r.seed}" if r.seed is not None else ""))
+            for n, r in sorted(self.recording.runs.items())
+        ]
         if self.runs.options != options:
             self.runs.options = options
         if self.run is not None:
             self.runs.value = str(self.run.number)
         share = self.recording.share
         if not self.recording.runs:
-            text = "Waiting for a run on the bus" if self.live else "Reading the log" if share < 1.0 else "No run in this log"
+            text = (
+                "Waiting for a run on the bus"
+                if self.live
+                else "Reading the log"
+                if share < 1.0
+                else "No run in this log"
+            )
         elif not self.run.places if self.run else False:
             text = "The motes of this run were told before this page listened: start the view first"
         else:
@@ -448,7 +538,9 @@ class Page:
                 self.put(name, data)
             self.chart.y_range.end = 1.1 * float(lines["traffic"]["rate"].max(initial=1.0))
             error = lines["error"]["error"]
-            self.chart.extra_y_ranges["error"].end = 1.1 * max(1e-3, float(np.percentile(error, 99))) if len(error) else 1.0
+            self.chart.extra_y_ranges["error"].end = (
+                1.1 * max(1e-3, float(np.percentile(error, 99))) if len(error) else 1.0
+            )
         self.draw_shade()
         self.draw_counters()
 
@@ -456,7 +548,9 @@ class Page:
         motes = self.motes
         assert motes is not None and self.run is not None
         has_told = len(self.run.motes) > 0
-        shade = self.chosen_shade or ("battery" if has_told and np.nanmin(motes.battery, initial=1.0) < 1.0 else "energy" if has_told else "sent")
+        shade = self.chosen_shade or (
+            "battery" if has_told and np.nanmin(motes.battery, initial=1.0) < 1.0 else "energy" if has_told else "sent"
+        )
         state = (shade, motes.frames_seen, motes.told_seen)
         if self.drawn.get("shade") == state or not len(motes.nodes):
             return
@@ -469,9 +563,15 @@ class Page:
         changed = {name: column.copy() for name, column in columns.items() if name == "sent" or len(self.run.motes)}
         self.sources["motes"].data.update(changed, value=value.copy())
         known = value[np.isfinite(value)]
-        high = 1.0 if shade == "battery" else float(np.percentile(known, 99)) if len(known) else 1.0
-        self.mapper.low, self.mapper.high = 0.0, max(high, 1e-9)
-        titles = {"sent": "frames sent", "battery": "battery left", "energy": "energy, mJ", "clock_error": "clock error, ms"}
+        low, high = np.percentile(known, (1, 99)) if len(known) and shade != "battery" else (0.0, 1.0)
+        low = float(low) if shade == "energy" else 0.0  # who listens all the time spends much alike
+        self.mapper.low, self.mapper.high = low, max(float(high), low + 1e-9)
+        titles = {
+            "sent": "frames sent",
+            "battery": "battery left",
+            "energy": "energy, mJ",
+            "clock_error": "clock error, ms",
+        }
         self.colour_bar.title = titles[shade]
         dead = ~motes.alive
         self.put("dead", {"x": motes.xy[dead, 0], "y": motes.xy[dead, 1], "node": motes.nodes[dead]})
@@ -485,7 +585,10 @@ class Page:
         errors = estimates["error"][np.isfinite(estimates["error"])]
         rows: list[tuple[str, str]] = []
         if len(errors):
-            rows += [("error now", f"{errors[-1]:.2f} m"), ("error, RMS so far", f"{math.sqrt(np.mean(errors**2)):.2f} m")]
+            rows += [
+                ("error now", f"{errors[-1]:.2f} m"),
+                ("error, RMS so far", f"{math.sqrt(np.mean(errors**2)):.2f} m"),
+            ]
         rows.append(("estimates", f"{len(estimates):,}"))
         if len(run.motes):
             rows.append(("energy spent", f"{np.nansum(motes.energy) / 1000.0:,.2f} J"))
@@ -497,23 +600,39 @@ class Page:
             for kind, index in recording.kinds.items()
             if index < 256 and motes.sent_of_kind[index]
         ]
-        faults = [(name, n) for name, n in (("broken events", recording.broken), ("events of other types", recording.unknown)) if n]
-        totals = [(name.replace("_", " "), f"{value:,.6g}") for name, value in run.totals.items() if value] if run.over and self.time >= run.end_s else []
+        faults = [
+            (name, n)
+            for name, n in (("broken events", recording.broken), ("events of other types", recording.unknown))
+            if n
+        ]
+        totals = (
+            [
+                (name.replace("_", " "), f"{value:,.6g}")
+                for name, value in run.totals.items()
+                if value and math.isfinite(value)
+            ]
+            if run.over and self.time >= run.end_s
+            else []
+        )
 
         def table(pairs: list[tuple[str, str]]) -> str:
-            return "".join(f"<tr><td>{html.escape(name)}</td><td>{html.escape(str(value))}</td></tr>" for name, value in pairs)
+            return "".join(
+                f"<tr><td>{html.escape(name)}</td><td>{html.escape(str(value))}</td></tr>" for name, value in pairs
+            )
 
         text = f"""<style>{COUNTERS_CSS}</style>
 <div class="big"><b>{self.time:,.2f}</b> s <span>of {run.end_s:,.1f} s</span></div>
-<div class="tiles"><div><b>{alive:,}</b>motes{f' of {len(motes.alive):,}' if alive < len(motes.alive) else ''}</div>
+<div class="tiles"><div><b>{alive:,}</b>motes{f" of {len(motes.alive):,}" if alive < len(motes.alive) else ""}</div>
 <div><b>{motes.frames_seen:,}</b>frames</div><div><b>{in_air:,}</b>on screen</div></div>
 <table>{table(rows)}</table><h3>Frames sent, by kind</h3><table>{"".join(kinds)}</table>
-{f'<h3>Totals of the run</h3><table>{table(totals)}</table>' if totals else ''}
-{f'<h3>Skipped</h3><table>{table([(n, f"{v:,}") for n, v in faults])}</table>' if faults else ''}"""
+{f"<h3>Totals of the run</h3><table>{table(totals)}</table>" if totals else ""}
+{f"<h3>Skipped</h3><table>{table([(n, f"{v:,}") for n, v in faults])}</table>" if faults else ""}"""
         if self.counters.text != text:
             self.counters.text = text
         name = run.scenario or Path(recording.name).name
-        self.doc.title = f"{name} · run {run.number} · {self.time:.1f} s · {len(motes.nodes)} motes · {motes.frames_seen} frames"
+        self.doc.title = (
+            f"{name} · run {run.number} · {self.time:.1f} s · {len(motes.nodes)} motes · {motes.frames_seen} frames"
+        )
 
 
 COUNTERS_CSS = """
@@ -542,7 +661,7 @@ def serve(recording: Recording, live: bool, port: int) -> None:
         origins = [f"{host}:{port}" for host in ("localhost", ADDRESS)]
         server = Server({"/": application}, address=ADDRESS, port=port, allow_websocket_origin=origins)
     except OSError as error:
-        raise Failure(f"port {port}: cannot listen on it: {error.strerror or error}; --port names another") from error
+        raise Failure(f"port {port}: cannot listen on it: {os.strerror(error.errno)}; --port names another") from error
     print(f"http://localhost:{port}/", flush=True)
     server.start()
     signal.signal(signal.SIGTERM, lambda *_: server.io_loop.add_callback_from_signal(server.io_loop.stop))

@@ -31,7 +31,13 @@ class Browser:
         if program is None:
             pytest.skip("no Chromium here")
         self.folder, self.loop, self.sent = folder, asyncio.new_event_loop(), 0
-        call = [program, *FLAGS, f"--user-data-dir={folder / 'profile'}", f"--window-size={width},{height}", "about:blank"]
+        call = [
+            program,
+            *FLAGS,
+            f"--user-data-dir={folder / 'profile'}",
+            f"--window-size={width},{height}",
+            "about:blank",
+        ]
         self.process = subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         assert self.process.stderr is not None
         port = None
@@ -78,10 +84,11 @@ class Browser:
         answer = self.do("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         return answer["result"].get("value")
 
-    def until(self, expression: str, seconds: float = 30.0) -> Any:
-        """The expression's value as soon as it is true."""
+    def until(self, expression: str, seconds: float = 30.0, define: str = "") -> Any:
+        """The expression's value as soon as it is true; `define` runs before it."""
         begin = time.monotonic()
         while True:
+            self.evaluate(define)
             value = self.evaluate(expression)
             if value:
                 return value

@@ -28,7 +28,13 @@ def frame(time_s: float, sender: int, destination: int = -1, kind: str = BEACON,
     inner = message(kind).encode() + b"\x12\x34"  # a check sum, which nobody here reads
     data = inner.ljust(127, b"\0")
     return message(
-        "motehound.frame_t", time_s=time_s, run=run, sender=sender, destination=destination, length=len(inner), data=data
+        "motehound.frame_t",
+        time_s=time_s,
+        run=run,
+        sender=sender,
+        destination=destination,
+        length=len(inner),
+        data=data,
     )
 
 

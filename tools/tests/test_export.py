@@ -16,7 +16,7 @@ from typing import Any
 
 import lcm
 import pytest
-from logs import simulated, small_run, track, write_log
+from logs import message, simulated, small_run, track, write_log
 from mcap.reader import make_reader
 
 from motehound_tools import export, messages
@@ -103,6 +103,21 @@ def test_broken_messages_are_counted_and_skipped(tmp_path: Path) -> None:
     assert (tally.broken, tally.channels.total()) == (1, 2 * len(small_run()))
 
 
+def test_arrays_of_variable_length_become_rows(tmp_path: Path) -> None:
+    totals = {"names": ["energy_mj", "lifetime_s"], "values": [12.5, math.nan]}
+    told = message("motehound.totals_t", time_s=3.0, run=2, count=2, **totals)
+    log = write_log(tmp_path / "a.lcm", [("TOTALS", told)])
+    export.write(log, "csv", tmp_path / "out")
+    rows = table(tmp_path / "out" / "MOTEHOUND_TOTALS.csv")
+    assert [(row["run"], row["names"], row["values"]) for row in rows] == [
+        ("2", "energy_mj", "12.5"),
+        ("2", "lifetime_s", "nan"),
+    ]
+    export.write(log, "mcap", tmp_path / "a.mcap")
+    (found,) = topics(tmp_path / "a.mcap")["MOTEHOUND_TOTALS"]
+    assert (found["names"], found["values"]) == (totals["names"], [12.5, None])
+
+
 def test_not_a_number_and_a_damaged_time_are_written(tmp_path: Path) -> None:
     log = tmp_path / "a.lcm"
     stream = lcm.EventLog(str(log), "w")
@@ -152,12 +167,19 @@ def test_rerun_has_every_estimate(tmp_path: Path) -> None:
     export.write(write_log(tmp_path / "a.lcm", [*small_run(0), *small_run(1)]), "rerun", tmp_path / "a.rrd")
     call = [sys.executable, "-m", "rerun", "rrd"]
     subprocess.run([*call, "verify", str(tmp_path / "a.rrd")], check=True, capture_output=True)
-    printed = subprocess.run([*call, "print", str(tmp_path / "a.rrd")], check=True, capture_output=True, text=True).stdout
+    printed = subprocess.run(
+        [*call, "print", str(tmp_path / "a.rrd")], check=True, capture_output=True, text=True
+    ).stdout
     count: Counter[str] = Counter()
     for rows, branch in re.findall(r"with (\d+) rows .* - (/\S+) -", printed):
         count[branch] += int(rows)
     for run in (0, 1):
-        assert [count[f"/run_{run}/{name}"] for name in ("motes", "truth", "track_0", "track_0/ellipse")] == [1, 20, 20, 20]
+        assert [count[f"/run_{run}/{name}"] for name in ("motes", "truth", "track_0", "track_0/ellipse")] == [
+            1,
+            20,
+            20,
+            20,
+        ]
 
 
 def test_every_type_has_a_schema_and_survives_json() -> None:
@@ -167,7 +189,16 @@ def test_every_type_has_a_schema_and_survives_json() -> None:
 
 
 def test_command_says_what_is_wrong_in_one_line(tmp_path: Path) -> None:
-    call = [sys.executable, "-m", "motehound_tools", "export", str(tmp_path / "no.lcm"), "--to", "csv", str(tmp_path / "out")]
+    call = [
+        sys.executable,
+        "-m",
+        "motehound_tools",
+        "export",
+        str(tmp_path / "no.lcm"),
+        "--to",
+        "csv",
+        str(tmp_path / "out"),
+    ]
     done = subprocess.run(call, capture_output=True, text=True)
     assert done.returncode == 1 and done.stdout == ""
     assert done.stderr == f"motehound_tools: {tmp_path / 'no.lcm'}: cannot read: No such file or directory\n"

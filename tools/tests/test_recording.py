@@ -1,0 +1,131 @@
+"""What a recording keeps of the messages, and what of it is seen at a time."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from logs import frame, message, small_run, track, write_log
+
+from motehound_tools import recording, scene
+from motehound_tools.event_log import EventLog
+from motehound_tools.recording import Recording, Table
+
+
+def taken(told: list) -> Recording:
+    found = Recording("test")
+    for _, one in told:
+        found.take(one if isinstance(one, bytes) else one.encode())
+    return found
+
+
+def mote(time_s: float, node: int, energy: float, alive: bool = True, clock_error: float = math.nan) -> tuple:
+    values = {"energy_mj": energy, "battery_left": 1.0 - energy / 100.0, "alive": alive, "clock_error_ms": clock_error}
+    return "MOTE", message("motehound.mote_t", time_s=time_s, node=node, **values)
+
+
+def test_table_is_in_order_of_time_whatever_the_order_of_arrival() -> None:
+    random, table = np.random.default_rng(0), Table([("value", "f8")])
+    times = random.permutation(500) / 10.0
+    for count, one in enumerate(times):
+        table.append((one, 2.0 * one))
+        early = table.snapshot()
+        assert len(early) == count + 1
+    assert (table.snapshot()["time"] == np.sort(times)).all() and (early["value"] == 2.0 * early["time"]).all()
+    assert len(table.until(10.0)) == 101
+    assert table.between(10.0, 10.5)["time"] == pytest.approx([10.1, 10.2, 10.3, 10.4, 10.5])
+    table.append((0.05, 0.0))
+    assert len(early) == 500 and table.snapshot()["time"][1] == 0.05
+
+
+def test_recording_of_a_small_run() -> None:
+    found = taken(small_run())
+    run = found.runs[0]
+    assert (run.scenario, run.end_s, run.over, len(run.places)) == ("small", 20.0, True, 9)
+    assert (len(run.frames), len(run.truth), len(run.track)) == (40, 20, 20)
+    assert set(found.kinds) == {"beacon", "report"}
+    assert run.track.snapshot()["error"] == pytest.approx(np.full(20, 5.0))
+    assert (found.broken, found.unknown) == (0, 0)
+
+
+def test_what_no_sender_writes_is_counted() -> None:
+    odd = [("TRACK", track(value, 1.0, 1.0)) for value in (math.nan, -1.0, 1e300)]
+    short = ("TRACK", track(1.0, 1.0, 1.0).encode()[:-1])
+    foreign = ("OTHER", b"12345678901234567890")
+    found = taken([*small_run(), *odd, short, foreign, ("HELLO", b"")])
+    assert (found.broken, found.unknown) == (4, 1)
+    assert found.runs[0].end_s == 20.0
+
+
+def test_another_simulation_with_the_same_run_takes_its_place() -> None:
+    found = taken([*small_run(seed=1), *small_run(seed=2, seconds=5)])
+    assert (found.runs[0].seed, found.runs[0].end_s, len(found.runs[0].frames)) == (2, 5.0, 10)
+
+
+def test_log_is_read_beside(tmp_path: Path) -> None:
+    path = write_log(tmp_path / "a.lcm", [*small_run(0), *small_run(1)])
+    path.write_bytes(path.read_bytes()[:-5])
+    found = recording.of_log(path)
+    for _ in range(200):
+        if found.share >= 1.0 and found.broken:
+            break
+        time.sleep(0.01)
+    assert (found.share, found.broken, sorted(found.runs)) == (1.0, 1, [0, 1])
+    assert sum(1 for _ in EventLog(path)) == 2 * len(small_run()) - 1
+    assert found.runs[0].over and not found.runs[1].over
+
+
+def test_motes_know_the_past_in_both_directions() -> None:
+    told = [*small_run(), mote(5.0, 3, 10.0), mote(5.0, 4, 20.0), mote(15.0, 3, 30.0, alive=False, clock_error=0.5)]
+    found = taken(sorted(told, key=lambda one: one[1].time_s))
+    motes = scene.Motes(found.runs[0])
+    assert motes.spacing == 10.0
+    motes.move(20.0)
+    assert motes.sent.sum() == 40 and motes.sent_of_kind[found.kinds["beacon"]] == 20
+    assert (motes.energy[3], motes.energy[4], motes.alive[3], motes.alive[4]) == (30.0, 20.0, False, True)
+    assert motes.clock_error[3] == 0.5 and math.isnan(motes.clock_error[4])
+    motes.move(6.0)
+    assert (motes.energy[3], motes.alive[3], motes.frames_seen) == (10.0, True, 12)
+    for moment in np.linspace(6.0, 20.0, 57):
+        motes.move(moment)
+    anew = scene.Motes(found.runs[0])
+    anew.move(20.0)
+    assert (anew.sent == motes.sent).all() and np.array_equal(anew.energy, motes.energy, equal_nan=True)
+
+
+def test_frames_in_the_air_go_from_their_sender_to_who_they_are_for() -> None:
+    told = [one for one in small_run() if one[0] != "FRAME"]
+    told += [("FRAME", frame(10.0, 0, 8, "mh.report_t")), ("FRAME", frame(10.2, 4)), ("FRAME", frame(10.2, 99, 0))]
+    run = taken(told).runs[0]
+    colours = np.array(["#111111", "#222222"])
+    seen = scene.frames_in_air(run, scene.Motes(run), 10.2, 0.4, colours)
+    assert [seen["arcs"][name].tolist() for name in ("x0", "y0", "x1", "y1")] == [[0.0], [0.0], [20.0], [20.0]]
+    assert (seen["rings"]["x"].tolist(), seen["rings"]["y"].tolist()) == ([10.0], [10.0])
+    assert (seen["arcs"]["color"].tolist(), seen["rings"]["color"].tolist()) == (["#111111"], ["#222222"])
+    along = [
+        scene.frames_in_air(run, scene.Motes(run), 10.0 + age, 0.4, colours)["pulses"]["x"] for age in (0.0, 0.1, 0.3)
+    ]
+    assert along[0] == 0.0 < along[1] < along[2] == pytest.approx(20.0)
+    assert len(scene.frames_in_air(run, scene.Motes(run), 10.41, 0.4, colours)["arcs"]["x0"]) == 0
+
+
+def test_track_and_truth_at_a_time() -> None:
+    run = taken(small_run()).runs[0]
+    found = scene.track(run, 7.5)
+    assert (found["heads"]["x"], found["heads"]["y"]) == ([7.0], [7.0]) and len(found["paths"]["xs"][0]) == 8
+    x, y = found["ellipses"]["xs"][0] - 7.0, found["ellipses"]["ys"][0] - 7.0
+    assert (x / 4.0) ** 2 + (y / 2.0) ** 2 == pytest.approx(np.ones_like(x))  # two standard deviations of 2 and 1 m
+    path, here = scene.truth(run, 7.5)
+    assert here == pytest.approx((10.5, 3.5)) and len(path["x"]) == 9
+    assert scene.track(run, 19.0 + 6.0)["heads"]["x"] == []  # long past the last estimate
+    assert scene.truth(run, 25.0)[1] is None
+
+
+def test_timeline_counts_every_frame() -> None:
+    run = taken(small_run()).runs[0]
+    lines = scene.timeline(run)
+    assert lines["traffic"]["rate"].sum() * (20.0 / 240) == pytest.approx(40)
+    assert lines["error"]["error"] == pytest.approx(np.full(20, 5.0))
