@@ -356,7 +356,9 @@ int network_make(struct network *network, const struct network_config *config, c
     const double lookahead_us = round(config->scenario->radio.delay_s * SIM_TIME_PER_S);
     *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
     frame_kinds_learn(&network->kinds);
-    if (account_open(&network->account, config->scenario, roster->count, roster->count - 1) || make_radio(network) ||
+    if (make_radio(network) ||
+        account_open(&network->account, config->scenario, radio_order(&network->radio), roster->count,
+                     roster->count - 1) ||
         make_host(network) || bring_up(network) || schedule_motes(network)) {
         snprintf(error, error_size, "out of memory for %u nodes", (unsigned)roster->count);
         network_free(network);
@@ -370,8 +372,8 @@ void network_free(struct network *network)
     if (network->host.destroy) {
         network->host.destroy(network->host.state);
     }
-    radio_free(&network->radio);
     account_close(&network->account);
+    radio_free(&network->radio);
     event_queue_free(&network->instants);
     host_actions_free(&network->actions);
     arena_free(&network->arena);

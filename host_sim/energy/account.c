@@ -1,6 +1,7 @@
 #include "energy/account.h"
 
-int account_open(struct account *account, const struct scenario *scenario, uint32_t motes, uint32_t sink)
+int account_open(struct account *account, const struct scenario *scenario, const uint32_t *order, uint32_t motes,
+                 uint32_t sink)
 {
     const struct energy_profile *profile = energy_profile_find(scenario->energy.profile);
     *account = (struct account){.open = profile != NULL, .tracker = scenario->tracker.name};
@@ -10,7 +11,8 @@ int account_open(struct account *account, const struct scenario *scenario, uint3
     const struct energy_config config = {.profile = profile,
                                          .power_dbm = scenario->radio.power_dbm,
                                          .battery_j = scenario->energy.battery_j,
-                                         .on_mains = scenario->energy.sink_mains ? sink : UINT32_MAX};
+                                         .on_mains = scenario->energy.sink_mains ? sink : UINT32_MAX,
+                                         .order = order};
     account->sensing_us = energy_sensing_us();
     account->sample_us = energy_sample_us(profile);
     account->frame_us = energy_frame_us(profile);

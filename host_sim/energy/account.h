@@ -14,8 +14,9 @@ struct account {
     const char *tracker;
 };
 
-/* All radios listen from time 0. Returns 0, or -1 if there is no memory (nothing to close). */
-int account_open(struct account *account, const struct scenario *scenario, uint32_t motes, uint32_t sink);
+/* All radios listen from time 0. `order`: as in struct energy_config. Returns 0, or -1 if there is no memory (nothing to close). */
+int account_open(struct account *account, const struct scenario *scenario, const uint32_t *order, uint32_t motes,
+                 uint32_t sink);
 
 void account_close(struct account *account);
 

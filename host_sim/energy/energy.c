@@ -14,25 +14,28 @@ const char *const energy_state_names[ENERGY_STATES] = {"sleep", "listen", "recei
 const char *const energy_cause_names[ENERGY_CAUSES] = {"idle",      "localisation", "clustering",
                                                        "reporting", "routing",      "time"};
 
-/* Where the time of a state begins among the cells; the middle four have a cell for each cause. */
+/* Where the time of a state begins among the cells; the first four have a cell for each cause. */
+enum { CPU_CELLS = 3 * ENERGY_CAUSES, SLEEP_CELL = 4 * ENERGY_CAUSES, SENSING_CELL };
+
 static const uint8_t first_cell[ENERGY_STATES + 1] = {
-    [ENERGY_SLEEP] = 0,
-    [ENERGY_SENSING] = 1,
-    [ENERGY_LISTEN] = 2,
-    [ENERGY_RECEIVE] = 2 + ENERGY_CAUSES,
-    [ENERGY_TRANSMIT] = 2 + 2 * ENERGY_CAUSES,
-    [ENERGY_CPU] = 2 + 3 * ENERGY_CAUSES,
+    [ENERGY_RECEIVE] = 0,        [ENERGY_LISTEN] = ENERGY_CAUSES, [ENERGY_TRANSMIT] = 2 * ENERGY_CAUSES,
+    [ENERGY_CPU] = CPU_CELLS,    [ENERGY_SLEEP] = SLEEP_CELL,     [ENERGY_SENSING] = SENSING_CELL,
     [ENERGY_OFF] = ENERGY_CELLS,
 };
 
 static uint8_t cell_of(enum energy_state state, enum energy_cause cause)
 {
     const uint8_t first = first_cell[state];
-    return (uint8_t)(first >= 2 && first < ENERGY_CELLS ? first + cause : first);
+    return (uint8_t)(first < SLEEP_CELL ? first + cause : first);
 }
 
 /* mA at volts to whole microwatts */
 static uint32_t microwatts(double current, double volts) { return (uint32_t)lround(1e3 * current * volts); }
+
+static struct energy_mote *mote_of(const struct energy *energy, uint32_t index)
+{
+    return &energy->motes[energy->order ? energy->order[index] : index];
+}
 
 static uint32_t radio_power(const struct energy *energy, uint8_t state)
 {
@@ -57,6 +60,7 @@ int energy_make(struct energy *energy, const struct energy_config *config, uint3
     const double volts = profile->volts;
     *energy = (struct energy){
         .profile = profile,
+        .order = config->order,
         .count = count,
         .on_mains = config->on_mains,
         .power_uw = {[ENERGY_SLEEP] = microwatts(profile->sleep, volts),
@@ -75,7 +79,7 @@ int energy_make(struct energy *energy, const struct energy_config *config, uint3
         return -1;
     }
     for (uint32_t i = 0; i < count; i++) {
-        struct energy_mote *mote = &energy->motes[i];
+        struct energy_mote *mote = mote_of(energy, i);
         mote->state = ENERGY_OFF;
         mote->cell = ENERGY_CELLS;
         mote->next_dead = NOBODY;
@@ -96,9 +100,9 @@ void energy_free(struct energy *energy)
     *energy = (struct energy){0};
 }
 
-static void die(struct energy *energy, struct energy_mote *mote, sim_time time)
+static void die(struct energy *energy, uint32_t index, sim_time time)
 {
-    const uint32_t index = (uint32_t)(mote - energy->motes);
+    struct energy_mote *mote = mote_of(energy, index);
     mote->dead = true;
     mote->since = time;
     mote->state = ENERGY_OFF;
@@ -106,14 +110,15 @@ static void die(struct energy *energy, struct energy_mote *mote, sim_time time)
     if (energy->last_dead == NOBODY) {
         energy->first_dead = index;
     } else {
-        energy->motes[energy->last_dead].next_dead = index;
+        mote_of(energy, energy->last_dead)->next_dead = index;
     }
     energy->last_dead = index;
 }
 
 /* Account for the radio's state until `time`. */
-static void settle(struct energy *energy, struct energy_mote *mote, sim_time time)
+static void settle(struct energy *energy, uint32_t index, sim_time time)
 {
+    struct energy_mote *mote = mote_of(energy, index);
     uint64_t elapsed = time - mote->since;
     const uint32_t power = radio_power(energy, mote->state);
     const int64_t used_pj = (int64_t)(elapsed * power);
@@ -121,7 +126,7 @@ static void settle(struct energy *energy, struct energy_mote *mote, sim_time tim
         elapsed = (uint64_t)mote->left_pj / power;
         mote->time_us[mote->cell] += elapsed;
         mote->left_pj -= (int64_t)(elapsed * power);
-        die(energy, mote, mote->since + elapsed);
+        die(energy, index, mote->since + elapsed);
         return;
     }
     mote->time_us[mote->cell] += elapsed;
@@ -132,11 +137,11 @@ static void settle(struct energy *energy, struct energy_mote *mote, sim_time tim
 void energy_radio(struct energy *energy, uint32_t index, sim_time time, enum energy_state state,
                   enum energy_cause cause)
 {
-    struct energy_mote *mote = &energy->motes[index];
+    struct energy_mote *mote = mote_of(energy, index);
     if (mote->dead) {
         return;
     }
-    settle(energy, mote, time);
+    settle(energy, index, time);
     if (!mote->dead) {
         mote->state = (uint8_t)state;
         mote->cell = cell_of(state, cause);
@@ -146,12 +151,12 @@ void energy_radio(struct energy *energy, uint32_t index, sim_time time, enum ene
 void energy_charge(struct energy *energy, uint32_t index, sim_time time, enum energy_state state,
                    enum energy_cause cause, uint64_t duration_us)
 {
-    struct energy_mote *mote = &energy->motes[index];
+    struct energy_mote *mote = mote_of(energy, index);
     if (mote->dead || mote->state == ENERGY_OFF) {
         return;
     }
     if (time > mote->since) {
-        settle(energy, mote, time);
+        settle(energy, index, time);
         if (mote->dead) {
             return;
         }
@@ -162,7 +167,7 @@ void energy_charge(struct energy *energy, uint32_t index, sim_time time, enum en
     mote->time_us[cell_of(state, cause)] += lasts;
     mote->left_pj -= (int64_t)(lasts * power);
     if (!enough) {
-        die(energy, mote, mote->since);
+        die(energy, index, mote->since);
     }
 }
 
@@ -173,9 +178,9 @@ void energy_run(struct energy *energy, sim_time now, void (*dies)(void *context,
 {
     struct event check;
     while (event_queue_next(&energy->checks) <= now && event_queue_pop(&energy->checks, &check)) {
-        struct energy_mote *mote = &energy->motes[check.content];
+        struct energy_mote *mote = mote_of(energy, check.content);
         if (!mote->dead && check.time > mote->since) {
-            settle(energy, mote, check.time);
+            settle(energy, check.content, check.time);
         }
         if (!mote->dead) {
             /* never fails: there is the room of the one that was taken out */
@@ -183,19 +188,19 @@ void energy_run(struct energy *energy, sim_time now, void (*dies)(void *context,
         }
     }
     while (energy->first_dead != NOBODY) {
-        struct energy_mote *mote = &energy->motes[energy->first_dead];
+        struct energy_mote *mote = mote_of(energy, energy->first_dead);
         dies(context, energy->first_dead, mote->since);
         energy->first_dead = mote->next_dead;
     }
     energy->last_dead = NOBODY;
 }
 
-bool energy_is_dead(const struct energy *energy, uint32_t mote) { return energy->motes[mote].dead; }
+bool energy_is_dead(const struct energy *energy, uint32_t mote) { return mote_of(energy, mote)->dead; }
 
 /* A mote's ledger until `now`, the original untouched. */
 static struct energy_mote settled(const struct energy *energy, uint32_t index, sim_time now)
 {
-    struct energy_mote mote = energy->motes[index];
+    struct energy_mote mote = *mote_of(energy, index);
     if (!mote.dead && now > mote.since) {
         const uint64_t elapsed = now - mote.since;
         mote.time_us[mote.cell] += elapsed;
@@ -207,9 +212,9 @@ static struct energy_mote settled(const struct energy *energy, uint32_t index, s
 /* Time of the powered mote in all states of its radio. */
 static uint64_t time_on(const struct energy_mote *mote)
 {
-    uint64_t sum = 0;
-    for (int cell = 0; cell < first_cell[ENERGY_CPU]; cell++) {
-        sum += cell != first_cell[ENERGY_SENSING] ? mote->time_us[cell] : 0;
+    uint64_t sum = mote->time_us[SLEEP_CELL];
+    for (int cell = 0; cell < CPU_CELLS; cell++) {
+        sum += mote->time_us[cell];
     }
     return sum;
 }

@@ -43,12 +43,13 @@ extern const char *const energy_cause_names[ENERGY_CAUSES];
 enum { ENERGY_CELLS = 2 + 4 * ENERGY_CAUSES };
 
 struct energy_mote {
-    uint64_t time_us[ENERGY_CELLS + 1]; /* the last: off */
-    sim_time since;                     /* the radio is in its state; for a dead mote: its death */
-    int64_t left_pj;                    /* in the battery; on mains more than can be used */
+    sim_time since;  /* the radio is in its state; for a dead mote: its death */
+    int64_t left_pj; /* in the battery; on mains more than can be used */
     uint32_t next_dead;
     uint8_t state, cell; /* of the radio now, and where its time goes */
     bool dead, mains;
+    uint64_t
+        time_us[ENERGY_CELLS + 1]; /* those of receiving and of listening idly first: they change most; the last: off */
 };
 
 struct energy_config {
@@ -56,11 +57,15 @@ struct energy_config {
     double power_dbm;  /* of the radio */
     double battery_j;  /* 0: all motes are on mains; at most 1e6 */
     uint32_t on_mains; /* the one mote that has no battery and is left out of the totals; UINT32_MAX: none */
+    /* Mote i's part of the ledger is its order[i]-th, a permutation that outlives it: those whose radios change together lie side by
+     * side. NULL: the i-th. */
+    const uint32_t *order;
 };
 
 struct energy {
     const struct energy_profile *profile;
     struct energy_mote *motes;
+    const uint32_t *order;
     uint32_t count, on_mains;
     uint32_t power_uw[ENERGY_STATES + 1]; /* on top of cpu_idle_uw, which every state but off draws */
     uint32_t cpu_idle_uw;

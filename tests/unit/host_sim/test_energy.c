@@ -22,8 +22,9 @@ static int told_count;
 
 static void make(const char *profile, double battery_j)
 {
+    static const uint32_t order[MOTES] = {3, 6, 7, 1, 0, 5, 2, 4};
     const struct energy_config config = {
-        .profile = energy_profile_find(profile), .battery_j = battery_j, .on_mains = SINK};
+        .profile = energy_profile_find(profile), .battery_j = battery_j, .on_mains = SINK, .order = order};
     TEST_ASSERT_EQUAL_INT(0, energy_make(&energy, &config, MOTES));
     told_count = 0;
 }
