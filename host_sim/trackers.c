@@ -1,5 +1,7 @@
 #include "trackers.h"
 
+#include "radio/radio.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -88,7 +90,7 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
     if (strcmp(name, mh_protocol_collection.name) == 0) {
         choice->protocol = &mh_protocol_collection;
         mh_collection_config_default(&choice->config.collection);
-        choice->config.collection.range_mm = (uint32_t)fmin(fmax(scenario->radio.range_m * 1000, 1), 1e9);
+        choice->config.collection.range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);
         return 0;
     }
     if (strcmp(name, mh_protocol_direct.name) == 0) {

@@ -7,6 +7,8 @@
 #include "radio/loss.h"
 #include "radio/places.h"
 
+#include <stdbool.h>
+
 struct channel {
     double loss; /* probability that a receiver loses a frame, each independently */
     struct random_stream stream;
@@ -19,6 +21,9 @@ struct passage {
     sim_time start, end;
     const struct place *sender, *receiver;
 };
+
+/* It does nothing to any frame: the verdict on all is LOSS_NONE. */
+static inline bool channel_is_quiet(const struct channel *channel) { return !(channel->loss > 0); }
 
 /* What the channel does to it: LOSS_NONE, or why it is lost. */
 enum loss_reason channel_verdict(struct channel *channel, const struct passage *passage);

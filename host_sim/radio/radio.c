@@ -93,6 +93,14 @@ struct radio_config radio_config_of(const struct scenario *scenario, double rang
     return config;
 }
 
+double radio_nominal_range_m(const struct scenario *scenario)
+{
+    struct radio_config config = radio_config_of(scenario, scenario->radio.range_m);
+    config.propagation.shadowing_db = 0;
+    const struct propagation propagation = propagation_make(&config.propagation, 0, 0);
+    return propagation_reach_m(&propagation, mw_from_dbm(config.profile.sensitivity_dbm));
+}
+
 /* In a disc every signal has power 1: noise there is none, of two that overlap neither is received, and the channel is busy if there
  * is a signal at any time of its assessment. */
 static void set_powers(struct radio *radio)
@@ -119,6 +127,7 @@ int radio_make(struct radio *radio, const struct radio_config *config, const dou
     *radio = (struct radio){.config = *config,
                             .propagation = propagation_make(&config->propagation, count, seed),
                             .channel = {config->loss, random_stream(seed, RANDOM_RADIO_LOSS), count},
+                            .turnaround = rounded(config->profile.turnaround_us),
                             .backoff_stream = random_stream(seed, RANDOM_RADIO_BACKOFF),
                             .free_frame = NONE};
     set_powers(radio);
@@ -130,11 +139,11 @@ int radio_make(struct radio *radio, const struct radio_config *config, const dou
     const sim_time longest = radio_profile_air_us(&config->profile, config->profile.preamble_bytes +
                                                                         config->profile.header_bytes + MH_FRAME_MAX);
     radio->motes = calloc(count, sizeof *radio->motes);
+    radio->open = calloc(count, sizeof *radio->open);
     radio->receivers = calloc(count, sizeof *radio->receivers);
     radio->found = malloc(count * sizeof *radio->found);
-    if (!radio->motes || !radio->receivers || !radio->found ||
-        air_make(&radio->air, &radio->places, radio->reach_m + disturbs_m,
-                 longest + rounded(config->profile.turnaround_us))) {
+    if (!radio->motes || !radio->open || !radio->receivers || !radio->found ||
+        air_make(&radio->air, &radio->places, radio->reach_m + disturbs_m, longest + radio->turnaround)) {
         radio_free(radio);
         return -1;
     }
@@ -152,6 +161,7 @@ void radio_free(struct radio *radio)
     }
     free(radio->receivers);
     free(radio->motes);
+    free(radio->open);
     free(radio->frames);
     free(radio->found);
     places_free(&radio->places);
@@ -250,6 +260,17 @@ static void show(const struct run *run, uint32_t index)
     }
 }
 
+static void open_or_close(const struct run *run, uint32_t index)
+{
+    const struct radio_mote *mote = &run->radio->motes[index];
+    sim_time *open = &run->radio->open[index];
+    if (!listens(mote) || mote->mac == MAC_TURNING || mote->mac == MAC_SENDING || mote->ack == ACK_SENDING) {
+        *open = SIM_TIME_NEVER;
+    } else if (*open == SIM_TIME_NEVER) {
+        *open = run->now + run->radio->turnaround;
+    }
+}
+
 static void enter(const struct run *run, uint32_t index, enum mac_state state, uint8_t cause)
 {
     struct radio_mote *mote = &run->radio->motes[index];
@@ -258,6 +279,7 @@ static void enter(const struct run *run, uint32_t index, enum mac_state state, u
     }
     mote->mac = (uint8_t)state;
     mote->mac_cause = cause;
+    open_or_close(run, index);
     show(run, index);
 }
 
@@ -268,6 +290,7 @@ static void enter_ack(const struct run *run, uint32_t index, enum ack_state stat
         mote->awake = run->now;
     }
     mote->ack = (uint8_t)state;
+    open_or_close(run, index);
     show(run, index);
 }
 
@@ -367,8 +390,7 @@ static void find_meetings(const struct run *run, const struct flight *flight, ui
 {
     struct radio *radio = run->radio;
     uint32_t found[MEETINGS_MAX];
-    const sim_time turnaround = rounded(radio->config.profile.turnaround_us);
-    const sim_time from = flight->start > turnaround ? flight->start - turnaround : 0;
+    const sim_time from = flight->start > radio->turnaround ? flight->start - radio->turnaround : 0;
     const struct place *place = places_at(&radio->places, flight->sender);
     size_t count = air_find(&radio->air, place, from, run->now, found, MEETINGS_MAX);
     count = count < MEETINGS_MAX ? count : MEETINGS_MAX;
@@ -425,11 +447,11 @@ static bool was_deaf(const struct radio *radio, uint32_t receiver, const struct 
     return false;
 }
 
-/* What a receiver in range makes of a transmission: LOSS_NONE if it has it. */
-static enum loss_reason judge(const struct run *run, const struct flight *flight, uint32_t receiver,
-                              const struct meetings *meetings)
+/* A receiver in range was not open all the time, or something has disturbed it. What does it make of a transmission? LOSS_NONE:
+ * it has it. */
+static enum loss_reason look_closer(const struct radio *radio, const struct flight *flight, uint32_t receiver,
+                                    const struct meetings *meetings)
 {
-    struct radio *radio = run->radio;
     const struct radio_mote *mote = &radio->motes[receiver];
     if (mote->power == RADIO_POWER_OFF || flight->cut) {
         return LOSS_DEAD;
@@ -437,13 +459,22 @@ static enum loss_reason judge(const struct run *run, const struct flight *flight
     if (!listens(mote) || mote->awake > flight->start) {
         return LOSS_ASLEEP;
     }
-    if (meetings) {
-        if (was_deaf(radio, receiver, meetings)) {
-            return LOSS_DEAF;
-        }
-        if (meetings->count > 0 && drowns(radio, flight, receiver, meetings)) {
-            return LOSS_COLLISION;
-        }
+    if (meetings && was_deaf(radio, receiver, meetings)) {
+        return LOSS_DEAF;
+    }
+    return meetings && drowns(radio, flight, receiver, meetings) ? LOSS_COLLISION : LOSS_NONE;
+}
+
+/* What a receiver in range makes of a transmission: LOSS_NONE if it has it. */
+static enum loss_reason judge(const struct run *run, const struct flight *flight, uint32_t receiver,
+                              const struct meetings *meetings)
+{
+    struct radio *radio = run->radio;
+    const bool undisturbed =
+        radio->open[receiver] <= flight->start && !flight->cut && (!meetings || meetings->count == 0);
+    const enum loss_reason reason = undisturbed ? LOSS_NONE : look_closer(radio, flight, receiver, meetings);
+    if (reason != LOSS_NONE || channel_is_quiet(&radio->channel)) {
+        return reason;
     }
     const struct passage passage = {flight->number, flight->start, run->now, places_at(&radio->places, flight->sender),
                                     places_at(&radio->places, receiver)};
@@ -567,7 +598,7 @@ static void assessed(const struct run *run, uint32_t index)
         busy(run, index);
         return;
     }
-    mote->due = run->now + rounded(profile->turnaround_us);
+    mote->due = run->now + radio->turnaround;
     push(radio, mote->due, EVENT(EVENT_START, index));
     enter(run, index, MAC_TURNING, radio->frames[mote->first].cause);
 }
@@ -821,6 +852,7 @@ static void switch_power(const struct run *run, uint32_t index, enum radio_power
     if (!listened && listens(mote)) {
         mote->awake = run->now;
     }
+    open_or_close(run, index);
     show(run, index);
 }
 

@@ -13,7 +13,8 @@
  * acknowledgement, and a radio's frames follow each other without a gap.
  *
  * Receivers are found through a grid of cells and kept per sender, those who disturb through another grid: a frame costs time in
- * those about it, not in the network's size. Memory: 48 bytes a mote, 4 for each of a sender's receivers, 48 for the grid. */
+ * those about it, not in the network's size. Memory: about 120 bytes a
+ * mote and 4 for each of its receivers once it has sent to all. */
 #ifndef MOTEHOUND_SIM_RADIO_H
 #define MOTEHOUND_SIM_RADIO_H
 
@@ -43,6 +44,9 @@ struct radio_config {
 
 /* What scenario->radio says; `range_m` stands in for its range. HUGE_VAL: all hear all, whatever the propagation. */
 struct radio_config radio_config_of(const struct scenario *scenario, double range_m);
+
+/* How far a frame is received in the mean, without shadowing: what motes are told of their radios. */
+double radio_nominal_range_m(const struct scenario *scenario);
 
 /* What a radio does; draws power accordingly. */
 enum radio_state { RADIO_SLEEP, RADIO_LISTEN, RADIO_RECEIVE, RADIO_TRANSMIT, RADIO_OFF };
@@ -84,8 +88,10 @@ struct radio {
     struct air air;
     struct event_queue events;
     double sensitivity, noise, capture, cca_threshold, disturbance; /* powers as of propagation.h, and the ratio */
-    double reach_m;                                                 /* how far a frame may be received */
+    sim_time turnaround;
+    double reach_m; /* how far a frame may be received */
     struct radio_mote *motes;
+    sim_time *open; /* since when a mote listens and neither sends nor turns round; SIM_TIME_NEVER: it does not */
     struct radio_receivers **receivers; /* of each mote, once it has sent to all */
     struct radio_frame *frames;         /* waiting or being sent */
     uint32_t frames_capacity, free_frame;
