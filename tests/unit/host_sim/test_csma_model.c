@@ -1,7 +1,7 @@
 /* n saturated motes in one cell, all of which hear each other, against an analytical model of unslotted CSMA/CA and against the
  * protocol played by itself.
  *
- * The model decouples the motes (Srivastava and Kumar, "Performance analysis of beacon-less IEEE 802.15.4 multi-hop networks", 2012, the case
+ * The model decouples the motes (along Srivastava and Kumar, "Performance analysis of beacon-less IEEE 802.15.4 multi-hop networks", 2012, the case
  * without hidden motes, here with queues that are never empty): whoever backs off assesses the channel at rate b, whatever the others
  * do, and finds it busy with probability a. The channel renews itself each time it falls silent. With T the air time, u the turnaround, c the
  * length of an assessment, W_k the mean wait of backoff k, and m = (n - 1) b:
