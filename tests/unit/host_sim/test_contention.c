@@ -478,6 +478,64 @@ static void runs_are_repeatable(void)
     }
 }
 
+/* Everything at once: frames to one and to all, radios that sleep, die and come back at any moment. Frames of a radio that is never switched off have one
+ * fate each, all memory comes back, and in the end nobody hears a signal. */
+static void random_life(void)
+{
+    enum { MOTES = 40, EVENTS = 4000, SAFE = 10 };
+    static const char *const profiles[] = {"ideal", "802154", "cc1000"};
+    const double y_m[MOTES] = {0};
+    double x_m[MOTES];
+    for (unsigned p = 0; p < 3; p++) {
+        const struct random_stream stream = random_stream(20 + p, RANDOM_DEPLOYMENT);
+        struct radio_config config = disc(profiles[p]);
+        unsigned handed[MOTES] = {0};
+        config.loss = 0.1;
+        config.queue = 4;
+        for (unsigned i = 0; i < MOTES; i++) {
+            x_m[i] = 500 * random_uniform(stream, i);
+        }
+        TEST_ASSERT_EQUAL_INT(0, radio_make(&radio, &config, x_m, y_m, MOTES, 3));
+        memset(&told, 0, sizeof told);
+        for (unsigned i = 0; i < EVENTS; i++) {
+            const uint64_t bits = random_bits(stream, 1000 + i);
+            const sim_time time = (sim_time)i * 1000 + bits % 1000;
+            const uint32_t mote = (uint32_t)(bits >> 16) % MOTES, to = (uint32_t)(bits >> 24) % MOTES;
+            if ((bits >> 32) % 4 > 0) {
+                handed[mote]++;
+                send(time, mote, (bits >> 40) % 2 ? to : RADIO_ALL, 10 + (bits >> 48) % 100);
+            } else if (mote >= SAFE || (bits >> 36) % 3 < RADIO_POWER_OFF) {
+                radio_power(&radio, time, mote, (enum radio_power)((bits >> 36) % 3));
+            }
+            told.states = 0;
+            TEST_ASSERT_EQUAL_INT(0, radio_run(&radio, time, &sink_with_states));
+        }
+        told.states = 0;
+        TEST_ASSERT_EQUAL_INT(0, radio_run(&radio, SIM_TIME_NEVER, &sink_with_states));
+        for (unsigned i = 0; i < MOTES; i++) {
+            const unsigned fates = told.outcomes[i][0] + told.outcomes[i][1] + told.outcomes[i][2];
+            TEST_ASSERT_TRUE(i < SAFE ? fates == handed[i] : fates <= handed[i]);
+        }
+        const uint32_t room = radio.frames_capacity;
+        for (uint32_t i = 0; i < room; i++) {
+            send(50000000, i % MOTES, RADIO_ALL, 10);
+        }
+        TEST_ASSERT_EQUAL_UINT(room, radio.frames_capacity);
+        told.states = 0;
+        TEST_ASSERT_EQUAL_INT(0, radio_run(&radio, SIM_TIME_NEVER, &sink_with_states));
+        for (uint32_t i = 0; i < MOTES; i++) {
+            radio_power(&radio, 100000000, i, RADIO_POWER_ASLEEP);
+            radio_power(&radio, 100000000, i, RADIO_POWER_ON);
+        }
+        told.states = 0;
+        TEST_ASSERT_EQUAL_INT(0, radio_run(&radio, SIM_TIME_NEVER, &sink_with_states));
+        for (unsigned i = 0; i < told.states; i++) {
+            TEST_ASSERT_TRUE(told.state[i].state == RADIO_SLEEP || told.state[i].state == RADIO_LISTEN);
+        }
+        radio_free(&radio);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -498,6 +556,7 @@ int main(void)
     RUN_TEST(frame_of_a_mote_that_dies_is_a_wreck);
     RUN_TEST(states_add_up);
     RUN_TEST(runs_are_repeatable);
+    RUN_TEST(random_life);
     port_exit(UNITY_END() > 0);
     return 0;
 }
