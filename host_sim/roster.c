@@ -1,13 +1,21 @@
 #include "roster.h"
 
+#include "radio/radio.h"
 #include "world/sensor.h"
 
 #include <math.h>
 #include <stdio.h>
 
+#define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
+
 struct mh_place place_from_metres(double x_m, double y_m, double z_m)
 {
     return (struct mh_place){(int32_t)lround(x_m * 1000), (int32_t)lround(y_m * 1000), (int32_t)lround(z_m * 1000)};
+}
+
+static bool clocks_are_ideal(const struct scenario *scenario)
+{
+    return fmax(scenario->clock.offset_s, fmax(scenario->clock.drift_ppm, scenario->clock.wander_ppm)) <= 0;
 }
 
 void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh_tick epoch)
@@ -19,8 +27,35 @@ void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh
         .tracker_config = &kit->tracker.config,
         .epoch = epoch,
         .interval = interval,
+        .tolerance = clocks_are_ideal(scenario) ? 0 : interval / 4, /* as much as the sensor node tolerates */
         .window = window_s > 0 ? (mh_tick)lround(window_s * MH_TICKS_PER_S) : interval / 2,
     };
+}
+
+/* Where in its tick a sync message ends, as struct mh_clock_config wants it: random access to the channel spreads it over the
+ * tick; without it the way to the radio and the air time are the same each time. */
+static uint8_t sent_q8(const struct scenario *scenario)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_SYNC};
+    const struct radio_profile profile = radio_config_of(scenario, scenario->radio.range_m).profile;
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    if (profile.contention || mh_wire_encode(&message, frame, &length) != MH_OK) {
+        return 128;
+    }
+    const size_t bytes = profile.preamble_bytes + profile.header_bytes + length;
+    const double begins_us = fmax(scenario->radio.delay_s * SIM_TIME_PER_S, 1);
+    const uint64_t ends_us = (uint64_t)llround(begins_us) + radio_profile_air_us(&profile, bytes);
+    return (uint8_t)(ends_us % MICROSECONDS_PER_TICK * 256 / MICROSECONDS_PER_TICK);
+}
+
+static void keep_time(struct mote_kit *kit, const struct scenario *scenario)
+{
+    const mh_tick period = (mh_tick)lround(scenario->clock.sync_period_s * MH_TICKS_PER_S);
+    kit->synchronised = scenario->clock.sync == SYNC_FLOODING;
+    kit->other = (struct mh_clock_config){.period = period, .wait = period / 8, .sent_q8 = sent_q8(scenario)};
+    kit->root = kit->other;
+    kit->root.root = true;
 }
 
 int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *error, size_t error_size)
@@ -42,6 +77,7 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         return -1;
     }
     mote_kit_complete(kit, scenario, 0);
+    keep_time(kit, scenario);
     return 0;
 }
 
@@ -52,7 +88,8 @@ struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct
                               .sensor = is_head ? NULL : &kit->sensor,
                               .head = is_head ? &kit->head : NULL,
                               .protocol = kit->protocol.protocol,
-                              .protocol_config = &kit->protocol.config};
+                              .protocol_config = &kit->protocol.config,
+                              .sync = kit->synchronised ? is_head ? &kit->root : &kit->other : NULL};
 }
 
 int roster_complete(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size)
@@ -71,7 +108,10 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
 
 int roster_make(struct roster *roster, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
-    *roster = (struct roster){0};
+    *roster = (struct roster){.seed = seed,
+                              .clock_offset_s = scenario->clock.offset_s,
+                              .clock_drift_ppm = scenario->clock.drift_ppm,
+                              .clock_wander_ppm = scenario->clock.wander_ppm};
     return mote_kit_make(&roster->kit, scenario, error, error_size) ||
                    deployment_make(&roster->deployment, scenario, seed, error, error_size)
                ? -1
@@ -90,7 +130,12 @@ struct host_mote roster_mote(const struct roster *roster, uint32_t mote)
     const struct recorded_node *node = &roster->deployment.nodes[mote];
     const struct mh_place place = is_sink ? place_from_metres(roster->sink_x_m, roster->sink_y_m, 0)
                                           : place_from_metres(node->x_m, node->y_m, node->z_m);
-    return mote_kit_mote(&roster->kit, roster_id(roster, mote), place, is_sink);
+    struct host_mote what = mote_kit_mote(&roster->kit, roster_id(roster, mote), place, is_sink);
+    if (!is_sink) {
+        what.clock = local_clock_draw(roster->seed, mote, roster->clock_offset_s, roster->clock_drift_ppm,
+                                      roster->clock_wander_ppm);
+    }
+    return what;
 }
 
 mh_node_id roster_id(const struct roster *roster, uint32_t mote)

@@ -16,11 +16,15 @@ struct mote_kit {
     struct tracker_choice tracker;
     struct protocol_choice protocol;
     struct mh_head_config head;
+    bool synchronised;                  /* motes keep the network's time ... */
+    struct mh_clock_config root, other; /* ... which is the head's */
 };
 
 struct roster {
     struct mote_kit kit;
     struct deployment deployment;
+    uint64_t seed;
+    double clock_offset_s, clock_drift_ppm, clock_wander_ppm; /* bounds; the sink's clock is ideal */
     double sink_x_m, sink_y_m;
     uint32_t count; /* of motes, the sink included */
     mh_node_id sink_id;
@@ -32,7 +36,7 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
 /* Complete the kit where the caller has filled in sensor, tracker and protocol; `epoch` is a sampling instant. */
 void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh_tick epoch);
 
-/* Mote `id` at `place`: the head, or a node with a sensor. It points into the kit. */
+/* Mote `id` at `place`: the head, or a node with a sensor; its clock is ideal. It points into the kit. */
 struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_head);
 
 /* The motes of `scenario` run with `seed`. Returns 0, or -1 with one line in `error`; roster_free it in any case. */

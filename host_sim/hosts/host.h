@@ -20,10 +20,11 @@ struct host_mote {
     const struct mh_protocol *protocol;
     const void *protocol_config;
     struct local_clock clock;
+    const struct mh_clock_config *sync; /* NULL: keeps no network time */
 };
 
 enum host_event_kind {
-    HOST_START,   /* power up: the mote begins with cleared memory */
+    HOST_START, /* power up: the mote begins with cleared memory; later than at 0 its clock, unless ideal, begins at zero */
     HOST_STOP,    /* it dies: no events and no alarms reach it until it starts again */
     HOST_READING, /* its sensor has sampled; stamped by the mote's own clock */
     HOST_FRAME,   /* all of `receivers` have heard a frame; `mote` has no meaning */
@@ -64,7 +65,9 @@ struct host_action {
         } transmit;
         struct mh_estimate estimate;
         bool may_sleep;
-        double clock_error_s; /* what the mote takes for the network's time, minus simulated time */
+        /* what the mote takes for the network's time, as exactly as it knows it in the middle of its tick, minus simulated time; NaN where it
+         * does not know it yet */
+        double clock_error_s;
     } as;
 };
 

@@ -1,10 +1,13 @@
 #include "hosts/host.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { CACHE_LINE = 64, PREFETCH_AHEAD = 6 };
+
+#define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
 
 /* Aligned for whatever a tracker or a protocol keeps. */
 union any {
@@ -32,7 +35,8 @@ struct slot {
     struct mh_mote_config config;
     struct local_clock clock;
     struct mh_mote mote;
-    struct head_memory *head; /* NULL on a mote that does not compute */
+    struct head_memory *head;       /* NULL on a mote that does not compute */
+    struct mh_clock *network_clock; /* NULL on a mote that keeps no network time; the host's to free */
     union any protocol_state[];
 };
 
@@ -134,6 +138,9 @@ static void start(struct slot *slot)
         memset(&slot->head->head, 0, sizeof slot->head->head);
         memset(slot->head->tracker_state, 0, slot->head->config.tracker->state_size);
     }
+    if (host->now > 0) {
+        local_clock_restart(&slot->clock, host->now);
+    }
     slot->alarm = SIM_TIME_NEVER;
     slot->up = true;
     const enum mh_status status = mh_mote_init(&slot->mote, &slot->config, &port, slot, tick_now(slot));
@@ -157,12 +164,26 @@ static void read_sensor(struct slot *slot, const struct host_event *event)
     (void)mh_mote_reading(&slot->mote, now, &reading); /* counts what it refuses */
 }
 
+static double clock_error_s(const struct slot *slot)
+{
+    uint8_t fraction = 128;
+    mh_tick shown = tick_now(slot);
+    if (slot->network_clock) {
+        if (!mh_clock_synchronised(slot->network_clock)) {
+            return (double)NAN;
+        }
+        shown = mh_clock_network(slot->network_clock, shown, &fraction);
+    }
+    const sim_time now = slot->host->now, ticks = now / MICROSECONDS_PER_TICK;
+    const double shown_ms = mh_ticks_between((mh_tick)ticks, shown) + fraction / 256.0;
+    return (shown_ms * MICROSECONDS_PER_TICK - (double)(now - ticks * MICROSECONDS_PER_TICK)) / SIM_TIME_PER_S;
+}
+
 static void answer_probe(struct slot *slot)
 {
     struct host_action *action = act(slot, HOST_CLOCK);
     if (action) {
-        const int64_t now = (int64_t)slot->host->now;
-        action->as.clock_error_s = (double)(local_clock_us(&slot->clock, now) - now) / SIM_TIME_PER_S;
+        action->as.clock_error_s = clock_error_s(slot);
     }
 }
 
@@ -255,6 +276,14 @@ static int add(void *state, uint32_t mote, const struct host_mote *what)
                                            .protocol = what->protocol,
                                            .protocol_config = what->protocol_config,
                                            .protocol_state = slot->protocol_state};
+    if (what->sync) {
+        slot->network_clock = malloc(sizeof *slot->network_clock);
+        if (!slot->network_clock) {
+            return -1;
+        }
+        slot->config.clock = what->sync;
+        slot->config.clock_state = slot->network_clock;
+    }
     if (what->head) {
         struct head_memory *memory = calloc(1, sizeof *memory + what->head->tracker->state_size);
         if (!memory) {
@@ -331,6 +360,9 @@ static void destroy(void *state)
         struct head_memory *following = host->heads->next;
         free(host->heads);
         host->heads = following;
+    }
+    for (uint32_t i = 0; i < host->count; i++) {
+        free(slot_of(host, i)->network_clock);
     }
     event_queue_free(&host->alarms);
     free(host->slots);

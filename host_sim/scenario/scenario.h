@@ -24,6 +24,8 @@ struct waypoint {
 
 enum propagation_kind { PROPAGATION_DISC, PROPAGATION_LOG_DISTANCE };
 
+enum sync_kind { SYNC_NONE, SYNC_FLOODING };
+
 enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_FILE };
 
 struct scenario {
@@ -108,6 +110,11 @@ struct scenario {
         } jam;
     } faults;
     struct {
+        double drift_ppm, offset_s, wander_ppm; /* of the motes' clocks: local_clock.h */
+        enum sync_kind sync;
+        double sync_period_s;
+    } clock;
+    struct {
         char *name; /* diffusion, luo or range */
         double diffusion_m2ps;
         double chi;
@@ -128,6 +135,7 @@ struct scenario {
         double lost_m;          /* a track is lost when its error exceeds this ... */
         int64_t lost_samples;   /* ... in so many successive samples */
         double mote_interval_s; /* between the states of the motes on a bus; 0: never */
+        double clock_settle_s;  /* errors of clocks count from then on */
     } metrics;
     struct {
         char *key; /* what `motehound run --sweep` varies; empty for nothing */

@@ -60,6 +60,13 @@ int64_t local_clock_us(const struct local_clock *clock, int64_t time_us)
     return time_us + clock->offset_us + gain_us(clock, time_us);
 }
 
+void local_clock_restart(struct local_clock *clock, sim_time time)
+{
+    if (!local_clock_is_ideal(clock)) {
+        clock->offset_us -= local_clock_us(clock, (int64_t)time);
+    }
+}
+
 int64_t local_clock_time_of_us(const struct local_clock *clock, int64_t local_us)
 {
     int64_t time = local_us - clock->offset_us;

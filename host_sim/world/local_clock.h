@@ -26,6 +26,9 @@ struct local_clock {
  * its tolerance), wander of exactly wander_ppm with a uniform phase. All three zero: an ideal clock. */
 struct local_clock local_clock_draw(uint64_t seed, uint32_t mote, double offset_s, double drift_ppm, double wander_ppm);
 
+/* The mote is powered up at `time`: the clock begins at zero, with the rate it has. An ideal clock stays ideal. */
+void local_clock_restart(struct local_clock *clock, sim_time time);
+
 bool local_clock_is_ideal(const struct local_clock *clock);
 
 /* What the clock shows, in microseconds, at `time_us` of simulated time (negative: before the run). Never decreases with time. */

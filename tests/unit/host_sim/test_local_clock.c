@@ -76,6 +76,16 @@ static void test_never_runs_backwards(void)
     }
 }
 
+static void test_restart(void)
+{
+    struct local_clock clock = {.offset_us = 77, .drift_ppm = -30}, ideal = {0};
+    local_clock_restart(&clock, 5000000);
+    TEST_ASSERT_EQUAL_INT64(0, local_clock_us(&clock, 5000000));
+    TEST_ASSERT_INT64_WITHIN(1, 10000000 - 300, local_clock_us(&clock, 15000000));
+    local_clock_restart(&ideal, 5000000);
+    TEST_ASSERT_TRUE(local_clock_is_ideal(&ideal));
+}
+
 static void test_draws_are_uniform_and_of_the_seed(void)
 {
     enum { MOTES = 4000 };
@@ -103,6 +113,7 @@ int main(void)
     RUN_TEST(test_wander_is_bounded_and_periodic);
     RUN_TEST(test_back_and_forth);
     RUN_TEST(test_never_runs_backwards);
+    RUN_TEST(test_restart);
     RUN_TEST(test_draws_are_uniform_and_of_the_seed);
     return UNITY_END();
 }
