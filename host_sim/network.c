@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Why there is an instant: the caller asked for it, or the observer is to be told of the motes. */
-enum { INSTANT_OF_WORLD, INSTANT_OF_MOTES };
+/* Why there is an instant: the caller asked for it, the observer is to be told of the motes, or they are asked for their time. */
+enum { INSTANT_OF_WORLD, INSTANT_OF_MOTES, INSTANT_OF_CLOCKS };
 
 #define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
 
@@ -160,6 +160,15 @@ static void transmit(struct network *network, const struct host_action *action)
     }
 }
 
+static void take_clock_error(struct network *network, uint32_t mote, double error_s)
+{
+    network->clock_error_s[mote] = error_s;
+    if (network_time_s(network) >= network->config.scenario->metrics.clock_settle_s &&
+        clock_errors_add(&network->clock_errors, error_s)) {
+        network->out_of_memory = true;
+    }
+}
+
 static void act(struct network *network, const struct host_action *action)
 {
     const struct network_config *config = &network->config;
@@ -179,6 +188,7 @@ static void act(struct network *network, const struct host_action *action)
         }
         break;
     case HOST_CLOCK:
+        take_clock_error(network, action->mote, action->as.clock_error_s);
         break;
     }
 }
@@ -223,6 +233,17 @@ static sim_time begin_of_window(const struct network *network)
     return earlier(earlier(first, world), earlier(battery, network->host.next(network->host.state)));
 }
 
+/* All but the sink, whose clock is the true one. */
+static int ask_for_time(struct network *network)
+{
+    for (uint32_t i = 0; i + 1 < network->config.roster->count; i++) {
+        const struct host_event probe = {.time = network->now, .kind = HOST_PROBE, .mote = i};
+        network->clock_error_s[i] = (double)NAN;
+        happen(network, &probe);
+    }
+    return event_queue_push(&network->instants, network->now + network->mote_interval, INSTANT_OF_CLOCKS);
+}
+
 static int tell_motes(struct network *network)
 {
     const struct network_config *config = &network->config;
@@ -233,10 +254,22 @@ static int tell_motes(struct network *network)
                                             accounted ? 1e3 * energy_used_j(ledger, i, network->now) : (double)NAN,
                                         .battery_left = accounted ? energy_battery_left(ledger, i, network->now) : 1,
                                         .alive = !accounted || !energy_is_dead(ledger, i),
-                                        .clock_error_ms = (double)NAN};
+                                        .clock_error_ms = network->clock_error_s ? 1e3 * network->clock_error_s[i] : 0};
         config->observer->mote(config->observer->context, network_time_s(network), roster_id(config->roster, i), &told);
     }
     return event_queue_push(&network->instants, network->now + network->mote_interval, INSTANT_OF_MOTES);
+}
+
+static int instant_comes(struct network *network, uint32_t why)
+{
+    switch (why) {
+    case INSTANT_OF_MOTES:
+        return tell_motes(network);
+    case INSTANT_OF_CLOCKS:
+        return ask_for_time(network);
+    default:
+        return network->config.instant(network->config.context);
+    }
 }
 
 static int window(struct network *network, sim_time end, char *error, size_t error_size)
@@ -253,9 +286,7 @@ static int window(struct network *network, sim_time end, char *error, size_t err
         energy_run(&network->account.ledger, network->now, dies, network);
     }
     while (event_queue_next(&network->instants) == network->now && event_queue_pop(&network->instants, &event)) {
-        network->out_of_memory |= event.content == INSTANT_OF_WORLD
-                                      ? network->config.instant(network->config.context) != 0
-                                      : tell_motes(network) != 0;
+        network->out_of_memory |= instant_comes(network, event.content) != 0;
     }
     const sim_time until =
         earlier(earlier(network->now + network->lookahead, event_queue_next(&network->instants)), end);
@@ -345,7 +376,18 @@ static int schedule_motes(struct network *network)
 {
     const double interval_s = network->config.scenario->metrics.mote_interval_s;
     network->mote_interval = (sim_time)llround(interval_s * SIM_TIME_PER_S);
-    return network->config.observer->mote && network->mote_interval > 0
+    if (network->mote_interval == 0) {
+        return 0;
+    }
+    if (roster_has_clocks(network->config.roster)) {
+        network->clock_error_s = calloc(network->config.roster->count, sizeof *network->clock_error_s);
+        const sim_time half_a_tick = MICROSECONDS_PER_TICK / 2; /* then an ideal clock has no error */
+        const sim_time first = network->mote_interval > half_a_tick ? network->mote_interval - half_a_tick : 0;
+        if (!network->clock_error_s || event_queue_push(&network->instants, first, INSTANT_OF_CLOCKS)) {
+            return -1;
+        }
+    }
+    return network->config.observer->mote
                ? event_queue_push(&network->instants, network->mote_interval, INSTANT_OF_MOTES)
                : 0;
 }
@@ -377,6 +419,8 @@ void network_free(struct network *network)
     event_queue_free(&network->instants);
     host_actions_free(&network->actions);
     arena_free(&network->arena);
+    clock_errors_free(&network->clock_errors);
+    free(network->clock_error_s);
     free(network->events);
     free(network->frames);
     *network = (struct network){0};
@@ -400,7 +444,9 @@ int network_count(struct network *network, struct simulation_counters *counters,
         snprintf(error, error_size, "out of memory");
         return -1;
     }
-    counters->clock_error_p99_ms = (double)NAN;
+    counters->clock_error_median_ms = clock_errors_quantile_ms(&network->clock_errors, 0.5);
+    counters->clock_error_p99_ms = clock_errors_quantile_ms(&network->clock_errors, 0.99);
+    counters->clock_known_share = clock_errors_known_share(&network->clock_errors);
     counters->motes = totals.motes;
     counters->head = totals.heads;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);

@@ -14,6 +14,7 @@
 #include "frame_kinds.h"
 #include "hosts/host.h"
 #include "radio/radio.h"
+#include "record/clock_errors.h"
 #include "roster.h"
 #include "simulation.h"
 
@@ -49,6 +50,8 @@ struct network {
     uint64_t windows, frames_sent[MH_MESSAGE_KINDS + 1]; /* the last: of no known kind */
     struct frame_kinds kinds;
     struct account account;
+    double *clock_error_s; /* of each mote, NaN where it does not know the time; NULL if all clocks are ideal */
+    struct clock_errors clock_errors;
     bool out_of_memory;
 };
 

@@ -32,21 +32,25 @@ void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh
     };
 }
 
-/* Where in its tick a sync message ends, as struct mh_clock_config wants it: random access to the channel spreads it over the
- * tick; without it the way to the radio and the air time are the same each time. */
+/* Where in its tick a sync message ends on average, as struct mh_clock_config wants it: it is handed over as a tick begins, and waits for
+ * one of the backoffs of a free channel, if there are any. */
 static uint8_t sent_q8(const struct scenario *scenario)
 {
     const struct mh_message message = {.kind = MH_MESSAGE_SYNC};
     const struct radio_profile profile = radio_config_of(scenario, scenario->radio.range_m).profile;
     uint8_t frame[MH_FRAME_MAX];
-    size_t length;
-    if (profile.contention || mh_wire_encode(&message, frame, &length) != MH_OK) {
-        return 128;
-    }
+    size_t length = 0;
+    (void)mh_wire_encode(&message, frame, &length);
     const size_t bytes = profile.preamble_bytes + profile.header_bytes + length;
-    const double begins_us = fmax(scenario->radio.delay_s * SIM_TIME_PER_S, 1);
-    const uint64_t ends_us = (uint64_t)llround(begins_us) + radio_profile_air_us(&profile, bytes);
-    return (uint8_t)(ends_us % MICROSECONDS_PER_TICK * 256 / MICROSECONDS_PER_TICK);
+    const double least_us = fmax(scenario->radio.delay_s * SIM_TIME_PER_S, 1) + radio_profile_air_us(&profile, bytes);
+    const double sense_us = profile.contention ? profile.cca_us + profile.turnaround_us : 0;
+    const unsigned backoffs = profile.contention ? 1u << profile.backoff_exponents[0] : 1;
+    double sum = 0;
+    for (unsigned k = 0; k < backoffs; k++) {
+        const double wait_us = profile.contention ? (profile.least_units + k) * profile.backoff_unit_us : 0;
+        sum += fmod(least_us + sense_us + wait_us, MICROSECONDS_PER_TICK) / MICROSECONDS_PER_TICK;
+    }
+    return (uint8_t)fmin(256 * sum / backoffs, 255);
 }
 
 static void keep_time(struct mote_kit *kit, const struct scenario *scenario)
@@ -136,6 +140,12 @@ struct host_mote roster_mote(const struct roster *roster, uint32_t mote)
                                       roster->clock_wander_ppm);
     }
     return what;
+}
+
+bool roster_has_clocks(const struct roster *roster)
+{
+    return roster->kit.synchronised ||
+           fmax(roster->clock_offset_s, fmax(roster->clock_drift_ppm, roster->clock_wander_ppm)) > 0;
 }
 
 mh_node_id roster_id(const struct roster *roster, uint32_t mote)

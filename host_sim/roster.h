@@ -50,6 +50,9 @@ void roster_free(struct roster *roster);
 /* What mote `mote` is. It points into the roster. */
 struct host_mote roster_mote(const struct roster *roster, uint32_t mote);
 
+/* Some mote's idea of the network's time may be wrong. */
+bool roster_has_clocks(const struct roster *roster);
+
 mh_node_id roster_id(const struct roster *roster, uint32_t mote);
 
 /* The mote with identifier `id`; the sink's number where no node has it. */

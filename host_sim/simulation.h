@@ -53,7 +53,8 @@ struct simulation_counters {
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
     struct energy_totals energy; /* all NaN where energy is not accounted for */
-    double clock_error_p99_ms;   /* NaN where clocks are ideal */
+    /* of the motes' network time, once it has settled; NaN where clocks are ideal */
+    double clock_error_median_ms, clock_error_p99_ms, clock_known_share;
 };
 
 /* Run `scenario` with `seed`. Deterministic: the same scenario, seed and library give the same calls. `stop` (may be NULL) is

@@ -32,6 +32,7 @@
     X(FRAMES_LOST_QUEUE, "frames_lost_queue", c->frames_lost_by[LOSS_QUEUE], "frames that the radio refused because it was full")                      \
     X(READINGS, "readings", c->motes.readings, "samples taken by all motes")                                                                       \
     X(READINGS_REFUSED, "readings_refused", c->motes.readings_refused, "samples out of range or out of time")                                      \
+    X(READINGS_UNSYNCHRONISED, "readings_unsynchronised", c->motes.readings_unsynchronised, "readings refused before the network time was known")  \
     X(REPORTS, "reports", c->motes.reports, "readings that a mote reported")                                                                       \
     X(REPORTS_ASKED, "reports_asked", c->motes.reports_asked, "of these reported only because the head asked")                                     \
     X(REPORTS_NO_ROUTE, "reports_no_route", c->motes.reports_no_route, "of these lost for want of a next hop")                                     \
@@ -39,7 +40,9 @@
     X(MEASUREMENTS_LATE, "measurements_late", c->head.late, "reports that reached the head too late")                                              \
     X(MEASUREMENTS_OVERFLOWED, "measurements_overflowed", c->head.overflowed, "reports that gave way to stronger ones for want of room")           \
     X(DELIVERY_SHARE, "delivery_share", delivery_share(c), "share of the reports that reached the head, in time or late")                          \
+    X(CLOCK_ERROR_MEDIAN_MS, "clock_error_median_ms", c->clock_error_median_ms, "median of the error of the motes' network time, over motes and time")\
     X(CLOCK_ERROR_P99_MS, "clock_error_p99_ms", c->clock_error_p99_ms, "99th percentile of the error of the motes' network time")                  \
+    X(CLOCK_KNOWN_SHARE, "clock_known_share", c->clock_known_share, "share of the motes and times at which the network time was known")            \
     X(LIFETIME_S, "lifetime_s", c->energy.lifetime_s, "until the first battery was empty")                                                         \
     X(LIFETIME_HALF_S, "lifetime_half_s", c->energy.lifetime_half_s, "until half of the batteries were empty")                                     \
     X(MOTES_DEAD, "motes_dead", c->energy.dead, "motes whose battery is empty at the end")                                                         \

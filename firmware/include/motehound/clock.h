@@ -70,8 +70,10 @@ struct mh_clock {
     uint32_t variance_q16; /* of pairs about the line */
 
     mh_node_id root;
-    uint16_t round;     /* newest heard of (or, at the root, begun) */
-    uint8_t hops;       /* to the root, by the round's shortest way so far */
+    uint16_t round; /* newest heard of (or, at the root, begun) */
+    uint8_t hops;   /* to the root; UINT8_MAX: not known */
+    uint8_t nearest,
+        nearest_before; /* one more than the fewest hops of the senders in this round so far, in the last one */
     bool following;     /* root and round are known */
     mh_tick round_time; /* when it was heard of */
     mh_tick interval;   /* until the next message without a new round; at the root until the next round */
@@ -90,7 +92,7 @@ struct mh_clock {
     struct mh_clock_moment {
         mh_node_id sender;
         mh_tick local;
-        uint8_t number;
+        uint8_t number, hops;
     } heard
         [MH_CLOCK_NEIGHBOURS]; /* the last message of each; a neighbour stays until it has been silent for 3 periods */
     uint8_t heard_count;

@@ -84,7 +84,7 @@
 #endif
 
 /* Synchronised time: pairs of local and network time that the line goes through, 8 bytes each, one a round; and neighbours whose messages are
- * stamped, 9 bytes each. */
+ * stamped, 10 bytes each. */
 #ifndef MH_CLOCK_PAIRS
 #ifdef __AVR__
 #define MH_CLOCK_PAIRS 16

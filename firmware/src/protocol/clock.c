@@ -202,9 +202,22 @@ static bool is_news(const struct mh_clock *clock, mh_tick now, const mh_sync_t *
     return same_root ? is_newer(clock, message) : !clock->following || is_silent(clock, now);
 }
 
+/* One more than in the message, at most UINT8_MAX, which stands for not known. */
+static uint8_t hops_by(const mh_sync_t *message)
+{
+    return message->hops < UINT8_MAX ? (uint8_t)(message->hops + 1) : UINT8_MAX;
+}
+
+/* A new round. This mote is as far from the root as the last two said, in the worse one: a frame that comes through once
+ * in a while from far away makes no neighbour. */
 static void follow(struct mh_clock *clock, mh_tick now, const mh_sync_t *message)
 {
-    clock->hops = UINT8_MAX;
+    if (!clock->following || clock->root != (mh_node_id)message->root) {
+        clock->nearest = clock->nearest_before = UINT8_MAX;
+    }
+    clock->hops = clock->nearest > clock->nearest_before ? clock->nearest : clock->nearest_before;
+    clock->nearest_before = clock->nearest;
+    clock->nearest = UINT8_MAX;
     clock->root = (mh_node_id)message->root;
     clock->round = (uint16_t)message->round;
     clock->round_time = now;
@@ -220,7 +233,9 @@ static void follow(struct mh_clock *clock, mh_tick now, const mh_sync_t *message
 /* Keep when the message came in, and give when the sender's last one did (false: not known). */
 static bool remember(struct mh_clock *clock, mh_tick now, const mh_sync_t *message, mh_tick *last)
 {
-    struct mh_clock_moment *place = NULL;
+    struct mh_clock_moment *place =
+        NULL; /* for one that is not known: of a silent one, or the farthest from the root */
+    uint8_t farthest = message->hops;
     const int32_t long_ago = (int32_t)(3 * clock->config->period);
     for (uint8_t i = 0; i < clock->heard_count; i++) {
         struct mh_clock_moment *moment = &clock->heard[i];
@@ -230,19 +245,23 @@ static bool remember(struct mh_clock *clock, mh_tick now, const mh_sync_t *messa
             *last = moment->local;
             moment->local = now;
             moment->number = message->number;
+            moment->hops = message->hops;
             return known;
         }
-        if (!fresh) {
+        const uint8_t hops = fresh ? moment->hops : UINT8_MAX;
+        if (hops > farthest) {
+            farthest = hops;
             place = moment;
         }
     }
-    if (!place && clock->heard_count < MH_CLOCK_NEIGHBOURS) {
+    if (clock->heard_count < MH_CLOCK_NEIGHBOURS) {
         place = &clock->heard[clock->heard_count++];
     }
     if (place) {
         place->sender = (mh_node_id)message->sender;
         place->local = now;
         place->number = message->number;
+        place->hops = message->hops;
     }
     return false;
 }
@@ -260,6 +279,7 @@ enum mh_status mh_clock_init(struct mh_clock *clock, const struct mh_clock_confi
     clock->id = id;
     clock->variance_q16 = PRIOR_VARIANCE_Q16;
     clock->interval = MH_CLOCK_FIRST_INTERVAL;
+    clock->hops = clock->nearest = clock->nearest_before = config->root ? 0 : UINT8_MAX;
     if (config->root) {
         clock->synchronised = true;
         clock->root = id;
@@ -282,14 +302,18 @@ bool mh_clock_message(struct mh_clock *clock, mh_tick now, const mh_sync_t *mess
     const bool known = remember(clock, now, message, &last);
     if (is_news(clock, now, message)) {
         follow(clock, now, message);
-    } else if ((mh_node_id)message->root != clock->root || (uint16_t)message->round != clock->round ||
-               (!clock->waits && message->hops >= clock->hops)) {
+    } else if ((mh_node_id)message->root != clock->root || (uint16_t)message->round != clock->round) {
         return false;
     }
-    if (message->hops < clock->hops) {
-        clock->hops = (uint8_t)(message->hops + 1);
+    const uint8_t hops = hops_by(message);
+    if (hops < clock->nearest) {
+        clock->nearest = hops;
     }
-    return known && message->stamped && take(clock, last, (mh_tick)message->time_ms, message->fraction);
+    if (clock->hops == UINT8_MAX) {
+        clock->hops = hops;
+    }
+    return known && message->stamped && message->hops < clock->hops &&
+           take(clock, last, (mh_tick)message->time_ms, message->fraction);
 }
 
 bool mh_clock_due(const struct mh_clock *clock, mh_tick *time)
