@@ -12,12 +12,13 @@
  * last fit, its covariance grows by an independent turn an interval. When measurements come back the gap becomes one straight segment of the path, and
  * the fit goes on; after MH_DIFFUSION_COAST intervals, or MH_DIFFUSION_SILENCE instants in succession without a significant increment, the track ends
  * and the next detection starts a new one. A track also begins again (MH_ESTIMATE_STARTED) when the fit has failed to explain the increments for
- * three instants, or their cluster has been elsewhere for four.
+ * three instants, or they have crowded elsewhere four times in succession.
  *
  * The release rate may change along the path, as fast as it has been seen to change lately.
  *
  * The covariance is that of the fit times the mean square of its own residuals: the noise assumed below is generous, which the fit needs, and the
- * covariance would be too large by that. A fit that fails, which needs numbers near the ends of float, ends the track. */
+ * covariance would be too large by that. Residuals beyond that noise come from failing sensors or a wrong model and do not average out: they count
+ * fourfold, and the covariance then also spans the way to where the increments crowd. A fit that fails, which needs numbers near the ends of float, ends the track. */
 #ifndef MOTEHOUND_DIFFUSION_H
 #define MOTEHOUND_DIFFUSION_H
 
@@ -41,19 +42,21 @@ struct mh_diffusion_config {
 struct mh_diffusion {
     struct mh_diffusion_config config;
     struct mh_trail_fit fit;
-    struct mh_place origin; /* of all metres */
-    mh_tick time;           /* of the last step */
-    bool stepped;           /* time is valid */
-    bool tracking;          /* fit holds a solution */
-    int since;              /* instants since the (re)start or the last gap */
-    int silent;             /* instants in succession without a significant increment */
-    int doubtful;           /* instants in succession with a bad fit */
-    int astray;             /* instants in succession with the cluster of increments elsewhere */
-    mh_real rate_change2;   /* mean square of the change of ln(rate) in an interval lately */
-    mh_real usual_misfit;   /* slow mean of the cost per row */
-    mh_real level;          /* mean square of the standardised residuals lately */
-    mh_real density;        /* of nodes that answer, 1/m2; 0: not known */
-    struct mh_vec2 asked;   /* centre of the interest */
+    struct mh_place origin;   /* of all metres */
+    mh_tick time;             /* of the last step */
+    bool stepped;             /* time is valid */
+    bool tracking;            /* fit holds a solution */
+    int since;                /* instants since the (re)start or the last gap */
+    int silent;               /* instants in succession without a significant increment */
+    int doubtful;             /* instants in succession with a bad fit */
+    int astray;               /* instants in succession with the cluster of increments elsewhere */
+    struct mh_vec2 cluster;   /* where the significant increments crowded last */
+    struct mh_sym2 ambiguity; /* covariance of the doubt between the fit and the cluster, m2 */
+    mh_real rate_change2;     /* mean square of the change of ln(rate) in an interval lately */
+    mh_real usual_misfit;     /* slow mean of the cost per row */
+    mh_real level;            /* mean square of the standardised residuals lately */
+    mh_real density;          /* of nodes that answer, 1/m2; 0: not known */
+    struct mh_vec2 asked;     /* centre of the interest */
     mh_real asked_radius;
     uint16_t used; /* measurements of the last instant that the fit uses */
 };

@@ -4,7 +4,7 @@
  * Unknowns: the m + 1 knots of the window, oldest first, two coordinates each, then ln(release rate) on the newest segment and its step from
  * segment to segment: n = 2 (m + 1) + 2.
  * Residuals:
- *   data    (y - h) / sqrt(R), Huber 4: y the increment of a node at an instant in the window, h what the model says: the frozen trail's share
+ *   data    (y - h) / sqrt(R), Cauchy 4 (sensors fail): y the increment of a node at an instant in the window, h what the model says: the frozen trail's share
  *           (the row's `base`) plus rate times the segments since, now minus one interval before;
  *   prior   of the oldest knot, Gaussian; of the changes of velocity from segment to segment, Huber 1.5 (a source mostly keeps its course, and
  *           sometimes turns sharply); of ln(rate) and its step, Gaussian.

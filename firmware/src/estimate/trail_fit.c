@@ -2,7 +2,7 @@
 
 #define STEPS_MAX 6
 #define TRIALS_MAX 4
-#define DATA_HUBER 4.0f
+#define DATA_CAUCHY 4.0f
 #define TURN_HUBER 1.5f
 #define LOG_RATE_STEP_MAX 1.0f
 #define BASE_ERROR 0.1f     /* the frozen trail's share is wrong by about a tenth of itself */
@@ -19,6 +19,14 @@ static mh_real huber(mh_real residual, mh_real bound, mh_real *weight)
     const mh_real size = mh_abs(residual);
     *weight = size <= bound ? 1.0f : bound / size;
     return size <= bound ? size * size : bound * (2.0f * size - bound);
+}
+
+/* rho(r) = c^2 ln(1 + (r / c)^2): the pull of a row that is far off fades, and does not depend on how exact it claims to be. */
+static mh_real cauchy(mh_real residual, mh_real scale, mh_real *weight)
+{
+    const mh_real excess = 1.0f + mh_squared(residual / scale);
+    *weight = 1.0f / excess;
+    return mh_squared(scale) * mh_log(excess);
 }
 
 /* normal += weight * j j', gradient += weight * residual * j, for the `length` successive unknowns from `first` on. */
@@ -143,7 +151,7 @@ static mh_real linearise(struct mh_trail_fit *fit, mh_real *normal, mh_real *gra
         mh_real j[MH_FIT_UNKNOWNS], weight;
         const mh_real excess = row_model(fit, row, rates, j) - row->increment;
         const mh_real information = 1.0f / (row->variance + mh_squared(BASE_ERROR * row->base));
-        data_cost += huber(excess * mh_sqrt(information), DATA_HUBER, &weight);
+        data_cost += cauchy(excess * mh_sqrt(information), DATA_CAUCHY, &weight);
         accumulate(normal, gradient, 0, n, j, weight * information, excess);
     }
     fit->data_cost = data_cost;

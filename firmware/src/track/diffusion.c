@@ -1,17 +1,18 @@
 #include "motehound/diffusion.h"
 
-#define CLUSTER_CANDIDATES 12
+#define CLUSTER_CANDIDATES (MH_DIFFUSION_SMALL ? 12 : 64)
 #define CLUSTER_LEAST 3     /* increments that make a cluster */
 #define DETECTIONS_LEAST 4  /* concentrations above chi that make a start */
 #define LEVEL_MIN 0.01f     /* straight segments do not fit a curved path better than that */
 #define LEVEL_INERTIA 10.0f /* rows' worth of what was known before */
+#define MISFIT_SHARED 4.0f  /* rows an unknown: what noise does not explain they have in common */
 #define SIGNIFICANCE_MAX 8.0f
 #define RANKING_MAX (MH_DIFFUSION_STRONG > CLUSTER_CANDIDATES ? MH_DIFFUSION_STRONG : CLUSTER_CANDIDATES)
 
 /* The best few of many, best first. */
 struct ranking {
     int count, capacity;
-    size_t index[RANKING_MAX > MH_DIFFUSION_NEAR ? RANKING_MAX : MH_DIFFUSION_NEAR];
+    uint16_t index[RANKING_MAX > MH_DIFFUSION_NEAR ? RANKING_MAX : MH_DIFFUSION_NEAR];
     mh_real score[RANKING_MAX > MH_DIFFUSION_NEAR ? RANKING_MAX : MH_DIFFUSION_NEAR];
 };
 
@@ -30,7 +31,7 @@ struct instant {
 
 static mh_real distance2(struct mh_vec2 a, struct mh_vec2 b) { return mh_squared(a.x - b.x) + mh_squared(a.y - b.y); }
 
-static void rank(struct ranking *ranking, size_t index, mh_real score)
+static void rank(struct ranking *ranking, uint16_t index, mh_real score)
 {
     int at = ranking->count;
     if (at == ranking->capacity) {
@@ -137,15 +138,29 @@ static bool is_strong(const struct mh_diffusion_config *config, const struct mh_
     return has_increment(m) && mh_q20_to_real(m->increment) >= config->chi;
 }
 
-/* The most significant increments of at least chi. */
-static void rank_strong(const struct mh_diffusion_config *config, const struct instant *now, int capacity,
-                        struct ranking *ranking)
+/* Within `radius2` of either place. */
+struct vicinity {
+    struct mh_vec2 centres[2];
+    mh_real radius2;
+};
+
+static bool is_within(const struct vicinity *vicinity, struct mh_vec2 place)
+{
+    return distance2(place, vicinity->centres[0]) <= vicinity->radius2 ||
+           distance2(place, vicinity->centres[1]) <= vicinity->radius2;
+}
+
+/* The most significant increments of at least chi, in a vicinity or (NULL) anywhere. */
+static void rank_strong(const struct mh_diffusion *track, const struct instant *now, int capacity,
+                        const struct vicinity *vicinity, struct ranking *ranking)
 {
     ranking->count = 0;
     ranking->capacity = capacity;
     for (size_t i = 0; i < now->count; i++) {
-        if (is_strong(config, &now->measurements[i])) {
-            rank(ranking, i, significance(config, &now->measurements[i]));
+        const struct mh_measurement *m = &now->measurements[i];
+        if (is_strong(&track->config, m) &&
+            (vicinity == NULL || is_within(vicinity, mh_place_relative(&m->place, &track->origin)))) {
+            rank(ranking, (uint16_t)i, significance(&track->config, m));
         }
     }
 }
@@ -157,7 +172,7 @@ static struct cluster find_cluster(const struct mh_diffusion *track, const struc
     struct cluster cluster = {false, {0.0f, 0.0f}};
     const mh_real radius2 = mh_squared(0.625f * track->config.reach_m);
     mh_real best = 0.0f;
-    rank_strong(&track->config, now, CLUSTER_CANDIDATES, &strong);
+    rank_strong(track, now, CLUSTER_CANDIDATES, NULL, &strong);
     for (int i = 0; i < strong.count; i++) {
         const struct mh_vec2 place = mh_place_relative(&now->measurements[strong.index[i]].place, &track->origin);
         struct mh_vec2 moment = {0.0f, 0.0f};
@@ -200,8 +215,10 @@ static void add_row(struct mh_diffusion *track, const struct mh_measurement *m)
     }
 }
 
-/* Rows of the newest knot: the nodes nearest to `centre`, silent or not, and the most significant increments anywhere. */
-static void add_rows(struct mh_diffusion *track, const struct instant *now, struct mh_vec2 centre, mh_real radius)
+/* Rows of the newest knot: the nodes nearest to `centre`, silent or not, and the most significant increments that are within reach of the centre or
+ * the cluster. */
+static void add_rows(struct mh_diffusion *track, const struct instant *now, struct mh_vec2 centre, mh_real radius,
+                     const struct cluster *cluster)
 {
     struct ranking near = {.capacity = MH_DIFFUSION_NEAR}, strong;
     track->used = 0;
@@ -209,13 +226,15 @@ static void add_rows(struct mh_diffusion *track, const struct instant *now, stru
         const struct mh_measurement *m = &now->measurements[i];
         const mh_real d2 = distance2(mh_place_relative(&m->place, &track->origin), centre);
         if (has_increment(m) && d2 <= mh_squared(radius)) {
-            rank(&near, i, -d2);
+            rank(&near, (uint16_t)i, -d2);
         }
     }
     for (int i = 0; i < near.count; i++) {
         add_row(track, &now->measurements[near.index[i]]);
     }
-    rank_strong(&track->config, now, MH_DIFFUSION_STRONG, &strong);
+    const struct vicinity vicinity = {{centre, cluster->found ? cluster->centre : centre},
+                                      mh_squared(mh_max(radius, track->config.reach_m))};
+    rank_strong(track, now, MH_DIFFUSION_STRONG, &vicinity, &strong);
     for (int i = 0; i < strong.count; i++) {
         bool taken = false;
         for (int j = 0; j < near.count; j++) {
@@ -244,7 +263,9 @@ static enum mh_status start(struct mh_diffusion *track, const struct instant *no
     track->since = 0;
     track->doubtful = 0;
     track->astray = 0;
-    add_rows(track, now, centre, track->config.reach_m);
+    const struct cluster here = {true, centre};
+    track->cluster = centre;
+    add_rows(track, now, centre, track->config.reach_m, &here);
     return mh_trail_fit_solve(&track->fit);
 }
 
@@ -298,12 +319,15 @@ static enum mh_status second_start(struct mh_trail_fit *fit, int from, struct mh
 static bool is_lost(struct mh_diffusion *track, const struct cluster *cluster)
 {
     const mh_real bad = misfit(&track->fit);
-    const bool astray =
-        cluster->found && distance2(newest(&track->fit)->place, cluster->centre) > mh_squared(track->config.reach_m);
     const mh_real normal = mh_max(1.0f, track->usual_misfit);
     track->usual_misfit += 0.05f * (mh_min(bad, 4.0f * normal) - track->usual_misfit);
     track->doubtful = bad > 6.0f * normal ? track->doubtful + 1 : 0;
-    track->astray = astray ? track->astray + 1 : 0;
+    if (cluster->found) {
+        const mh_real near = (bad > 1.0f ? 0.5f : 1.0f) * track->config.reach_m;
+        const bool astray = distance2(newest(&track->fit)->place, cluster->centre) > mh_squared(near);
+        track->astray = astray ? track->astray + 1 : 0;
+        track->cluster = cluster->centre;
+    }
     return cluster->found && (track->doubtful >= 3 || bad > 24.0f * normal || track->astray >= 4);
 }
 
@@ -321,7 +345,7 @@ static enum mh_status follow(struct mh_diffusion *track, const struct instant *n
     }
     mh_trail_fit_advance(fit, now->time);
     track->since++;
-    add_rows(track, now, track->asked, track->asked_radius);
+    add_rows(track, now, track->asked, track->asked_radius, &cluster);
     enum mh_status status = mh_trail_fit_solve(fit);
     if (status == MH_OK && cluster.found &&
         (misfit(fit) > 1.0f ||
@@ -337,7 +361,7 @@ static enum mh_status follow(struct mh_diffusion *track, const struct instant *n
 }
 
 /* Position, velocity and covariance at `time`, not before the newest knot: along the last segment. The covariance is the fit's plus that of
- * the turns since, one independent change of velocity an interval. */
+ * the turns since, one independent change of velocity an interval, and the doubt of learn_misfit(). */
 static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct mh_estimate *estimate)
 {
     const struct mh_trail_fit *fit = &track->fit;
@@ -362,9 +386,27 @@ static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct m
     mh_trail_fit_block(fit, m, m, pp);
     mh_trail_fit_block(fit, m, m - 1, pq);
     mh_trail_fit_block(fit, m - 1, m - 1, qq);
-    estimate->covariance.xx = track->level * (g * g * pp[0] - 2.0f * g * f * pq[0] + f * f * qq[0]) + turns;
-    estimate->covariance.xy = track->level * (g * g * pp[1] - g * f * (pq[1] + pq[2]) + f * f * qq[1]);
-    estimate->covariance.yy = track->level * (g * g * pp[3] - 2.0f * g * f * pq[3] + f * f * qq[3]) + turns;
+    const mh_real level = track->level < 1.0f ? track->level : 1.0f + MISFIT_SHARED * (track->level - 1.0f);
+    estimate->covariance.xx =
+        track->ambiguity.xx + level * (g * g * pp[0] - 2.0f * g * f * pq[0] + f * f * qq[0]) + turns;
+    estimate->covariance.xy = track->ambiguity.xy + level * (g * g * pp[1] - g * f * (pq[1] + pq[2]) + f * f * qq[1]);
+    estimate->covariance.yy =
+        track->ambiguity.yy + level * (g * g * pp[3] - 2.0f * g * f * pq[3] + f * f * qq[3]) + turns;
+}
+
+/* What the residuals say of the covariance. Where they are larger than the noise assumed, the source may as well be where the increments crowd:
+ * with the share of the misfit that noise does not explain as probability. */
+static void learn_misfit(struct mh_diffusion *track)
+{
+    const struct mh_trail_fit *fit = &track->fit;
+    track->level =
+        mh_max(LEVEL_MIN, (fit->cost + LEVEL_INERTIA * track->level) / ((mh_real)fit->row_count + LEVEL_INERTIA));
+    const struct mh_vec2 place = fit->knots[fit->knot_count - 1].place;
+    const struct mh_vec2 off = {track->cluster.x - place.x, track->cluster.y - place.y};
+    const mh_real doubt = track->level > 1.0f ? 1.0f - 1.0f / track->level : 0.0f;
+    track->ambiguity.xx = doubt * off.x * off.x;
+    track->ambiguity.xy = doubt * off.x * off.y;
+    track->ambiguity.yy = doubt * off.y * off.y;
 }
 
 /* Follow the density of the nodes that answered, and choose whom to ask next. */
@@ -482,8 +524,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         return MH_NONE;
     }
     if (flags != MH_ESTIMATE_COASTED) {
-        track->level =
-            mh_max(LEVEL_MIN, (fit->cost + LEVEL_INERTIA * track->level) / ((mh_real)fit->row_count + LEVEL_INERTIA));
+        learn_misfit(track);
     }
     ask(track, &now);
     struct mh_estimate result = {.measurements = track->used, .flags = flags};
