@@ -1,7 +1,5 @@
 #include "hosts/worker.h"
 
-#include "engine/arena.h"
-#include "hosts/worker_wire.h"
 #include "roster.h"
 #include "scenario/text.h"
 
@@ -31,7 +29,7 @@ struct motes {
 
 struct worker {
     const struct worker_config *config;
-    struct worker_link link;
+    struct worker_link *link;
     int64_t session, number;
     double joined_s, heard_s;
     bool assigned, released;
@@ -147,7 +145,7 @@ static struct host_event *read_events(const struct motes *motes, const motehound
 
 static void send_answer(struct worker *worker)
 {
-    worker_link_publish(&worker->link, worker->answer_channel, worker->answer, worker->answer_size);
+    worker_link_publish(worker->link, worker->answer_channel, worker->answer, worker->answer_size);
 }
 
 /* Keep `answer`, new memory, as the answer to request `number`, and send it. */
@@ -295,7 +293,7 @@ static void on_count(struct worker *worker, const motehound_worker_count_t *mess
 #define SERVE(worker, kind, buffer, begins)                                                                            \
     do {                                                                                                               \
         motehound_worker_##kind##_t message;                                                                           \
-        if (worker_decode_##kind(&(worker)->link, buffer, &message)) {                                                 \
+        if (worker_decode_##kind((worker)->link, buffer, &message)) {                                                  \
             if (is_next(worker, message.session, message.number, begins)) {                                            \
                 on_##kind(worker, &message);                                                                           \
             }                                                                                                          \
@@ -316,7 +314,7 @@ static void receive_request(const lcm_recv_buf_t *buffer, const char *channel, v
     } else if (strcmp(kind, "COUNT") == 0) {
         SERVE(worker, count, buffer, false);
     } else {
-        worker->link.not_understood++;
+        worker->link->not_understood++;
     }
 }
 
@@ -331,7 +329,7 @@ static void join(struct worker *worker, int64_t session)
     const motehound_worker_join_t message = {session, worker->number, name, (char *)worker->config->version};
     uint8_t *bytes = worker_encode_join(&message, &size);
     if (bytes) {
-        worker_link_publish(&worker->link, WORKER_JOIN, bytes, size);
+        worker_link_publish(worker->link, WORKER_JOIN, bytes, size);
     }
     free(bytes);
 }
@@ -341,7 +339,7 @@ static void receive_call(const lcm_recv_buf_t *buffer, const char *channel, void
     struct worker *worker = context;
     motehound_worker_call_t call;
     (void)channel;
-    if (!worker_decode_call(&worker->link, buffer, &call)) {
+    if (!worker_decode_call(worker->link, buffer, &call)) {
         return;
     }
     const double now_s = worker_now_s();
@@ -363,7 +361,7 @@ static void receive_release(const lcm_recv_buf_t *buffer, const char *channel, v
     struct worker *worker = context;
     motehound_worker_release_t release;
     (void)channel;
-    if (worker_decode_release(&worker->link, buffer, &release)) {
+    if (worker_decode_release(worker->link, buffer, &release)) {
         worker->released = worker->released || (worker->assigned && release.session == worker->session);
         motehound_worker_release_t_decode_cleanup(&release);
     }
@@ -384,7 +382,7 @@ static int serve(struct worker *worker, char *error, size_t error_size)
     const struct worker_config *config = worker->config;
     double looked_s = 0;
     while (!worker->released) {
-        worker_link_handle(&worker->link, 0.1, config->lifeline);
+        worker_link_handle(worker->link, 0.1, config->lifeline);
         const double now_s = worker_now_s();
         if (now_s - looked_s < 0.05) {
             continue;
@@ -403,26 +401,49 @@ static int serve(struct worker *worker, char *error, size_t error_size)
     return worker->error[0] != '\0' ? fail(error, error_size, "%s", worker->error) : 0;
 }
 
-int worker_serve(const struct worker_config *config, char *error, size_t error_size)
+struct worker *worker_open(const struct worker_config *config, struct worker_link *link, char *error, size_t error_size)
 {
     char channel[WORKER_CHANNEL_MAX];
-    struct worker worker = {
-        .config = config, .number = config->worker ? config->worker : worker_random(), .joined_s = -courtship_s};
-    if (worker_link_open(&worker.link, config->url, config->drop_share, error, error_size) != 0) {
+    struct worker *worker = calloc(1, sizeof *worker);
+    if (!worker) {
+        fail(error, error_size, "out of memory");
+        return NULL;
+    }
+    worker->config = config;
+    worker->link = link;
+    worker->number = config->worker ? config->worker : worker_random();
+    worker->joined_s = -courtship_s;
+    if (!lcm_subscribe(link->lcm, WORKER_CALL, receive_call, worker) ||
+        !lcm_subscribe(link->lcm, WORKER_RELEASE, receive_release, worker) ||
+        !lcm_subscribe(link->lcm, worker_channel(worker->number, WORKER_REQUESTS, channel), receive_request, worker)) {
+        fail(error, error_size, "--bus %s: LCM takes no subscription", config->url);
+        worker_close(worker);
+        return NULL;
+    }
+    return worker;
+}
+
+void worker_close(struct worker *worker)
+{
+    forget_motes(&worker->motes);
+    host_actions_free(&worker->actions);
+    free(worker->answer);
+    free(worker);
+}
+
+int worker_serve(const struct worker_config *config, char *error, size_t error_size)
+{
+    struct worker_link link;
+    int status = -1;
+    if (worker_link_open(&link, config->url, config->drop_share, error, error_size) != 0) {
         return -1;
     }
-    int status = -1;
-    if (!lcm_subscribe(worker.link.lcm, WORKER_CALL, receive_call, &worker) ||
-        !lcm_subscribe(worker.link.lcm, WORKER_RELEASE, receive_release, &worker) ||
-        !lcm_subscribe(worker.link.lcm, worker_channel(worker.number, WORKER_REQUESTS, channel), receive_request,
-                       &worker)) {
-        fail(error, error_size, "--bus %s: LCM takes no subscription", config->url);
-    } else {
-        status = serve(&worker, error, error_size);
+    struct worker *worker = worker_open(config, &link, error, error_size);
+    if (worker) {
+        status = serve(worker, error, error_size);
+        worker_link_close(&link); /* which calls the worker no more */
+        worker_close(worker);
     }
-    worker_link_close(&worker.link);
-    forget_motes(&worker.motes);
-    host_actions_free(&worker.actions);
-    free(worker.answer);
+    worker_link_close(&link);
     return status;
 }

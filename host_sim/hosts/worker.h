@@ -2,9 +2,9 @@
 #ifndef MOTEHOUND_SIM_WORKER_H
 #define MOTEHOUND_SIM_WORKER_H
 
+#include "hosts/worker_wire.h"
+
 #include <signal.h>
-#include <stddef.h>
-#include <stdint.h>
 
 struct worker_config {
     const char *url;     /* of the bus */
@@ -15,6 +15,14 @@ struct worker_config {
     double drop_share;   /* of the messages is dropped on purpose */
     const volatile sig_atomic_t *stop;
 };
+
+struct worker;
+
+/* A worker that listens on `link`, which outlives it: each message is served as it is handled. Returns NULL with one line in `error`. */
+struct worker *worker_open(const struct worker_config *config, struct worker_link *link, char *error,
+                           size_t error_size);
+
+void worker_close(struct worker *worker);
 
 /* Wait for a run that calls for workers, join it, host its motes until it is over. Returns 0, or -1 with one line in `error`: no
  * bus, a scenario that cannot be used, a run that went silent, stopped. */
