@@ -326,6 +326,105 @@ def distribution_picture(output: Output) -> Picture | None:
     return Picture("Distribution", svg_text(figure), caption)
 
 
+# What the ledger's columns and rows stand for, and their colours.
+STATES = {
+    "sensing": ("sensing", "#e69f00"),
+    "cpu": ("computing", "#cc79a7"),
+    "transmit": ("transmitting", "#d55e00"),
+    "receive": ("receiving", "#0072b2"),
+    "listen": ("listening", "#a6c8de"),
+    "sleep": ("sleeping", "#e1e5ea"),
+}
+CAUSES = {
+    "localisation": ("sampling, computing and asking", "#009e73"),
+    "clustering": ("clusters", "#cc79a7"),
+    "reporting": ("carrying reports", "#0072b2"),
+    "routing": ("finding ways and neighbours", "#d55e00"),
+    "time": ("keeping clocks together", "#e69f00"),
+    "idle": ("waiting and sleeping", "#d5dae0"),
+}
+LOST_AT_RECEIVER = {
+    "collision": "because of interference",
+    "random": "by the channel's own loss process",
+    "deaf": "because the receiver was sending",
+    "asleep": "because the receiver was asleep",
+    "dead": "because the receiver was dead, or the sender died",
+    "jammed": "in a jammed zone",
+    "partition": "by a partition of the network",
+    "range": "because the addressee was out of range",
+}
+LOST_AT_SENDER = {
+    "busy": "frames given up because the channel was never free",
+    "no_ack": "frames given up for want of an acknowledgement",
+    "queue": "frames that the radio refused because it was full",
+}
+
+
+def stack(axes: Axes, parts: list[tuple[str, str, float]], title: str) -> None:
+    """One bar of (name, colour, size), with a legend that gives each part's share."""
+    total, left = sum(size for _, _, size in parts), 0.0
+    for name, colour, size in parts:
+        axes.barh([0], [size], left=left, color=colour, label=f"{name}, {100.0 * size / total:.2g} %", height=0.7)
+        left += size
+    axes.set_title(title, loc="left")
+    axes.set_yticks([])
+    axes.grid(False)
+    axes.spines["left"].set_visible(False)
+    axes.set_xlim(0, total)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.42), ncols=3, handlelength=1.0, columnspacing=1.2)
+
+
+def energy_picture(output: Output) -> Picture | None:
+    """The motes' energy by state, by cause, and by cause without that for nothing."""
+    total = output.statistic("energy_mj") / 1e3
+    if not total > 0.0:
+        return None
+
+    def parts(prefix: str, names: dict[str, tuple[str, str]]) -> list[tuple[str, str, float]]:
+        sizes = {name: output.statistic(prefix + name) / 1e3 for name in names}
+        return [(name, names[name][1], size) for name, size in sizes.items() if size > 0.0]
+
+    by_cause = parts("energy_mj_", CAUSES)
+    for_something = [part for part in by_cause if part[0] != "idle"]
+    bars = [(parts("energy_mj_state_", STATES), "By state, J"), (by_cause, "By cause, J")]
+    if for_something and len(for_something) < len(by_cause):
+        bars.append((for_something, "By cause, without idling, J"))
+    figure, rows = pyplot.subplots(len(bars), 1, figsize=(6.4, 1.6 * len(bars)), squeeze=False, layout="constrained")
+    for axes, (bar, title) in zip(rows[:, 0], bars):
+        stack(axes, bar, title)
+    said = f"All motes but the one on mains used {total:,.4g} J a run."
+    lifetime = output.statistic("lifetime_s")
+    if np.isfinite(lifetime):
+        said += f" The first battery was empty after {lifetime:,.4g} s."
+    return Picture("Energy", svg_text(figure), said)
+
+
+def losses_picture(output: Output) -> Picture | None:
+    """Frames lost, by reason, where the ones at a receiver count receptions and the others frames."""
+    reasons = [*LOST_AT_RECEIVER, *LOST_AT_SENDER]
+    lost = {reason: output.statistic(f"frames_lost_{reason}") for reason in reasons}
+    known = {reason: count for reason, count in lost.items() if count > 0.0}
+    if not known:
+        return None
+    figure, axes = pyplot.subplots(figsize=(6.4, 0.8 + 0.34 * len(known)), layout="constrained")
+    names = [reason.replace("_", " ") for reason in known]
+    colours = [RAW if reason in LOST_AT_SENDER else TRACK for reason in known]
+    bars = axes.barh(names, list(known.values()), color=colours, height=0.65)
+    axes.bar_label(bars, labels=[f"{count:,.0f}" for count in known.values()], padding=4)
+    axes.invert_yaxis()
+    axes.margins(x=0.14)
+    axes.grid(axis="y", visible=False)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    axes.set_xlabel("lost, mean of the runs")
+    received, sent = output.statistic("frames_received"), output.statistic("frames_sent")
+    return Picture(
+        "Frames lost",
+        svg_text(figure),
+        "Blue: receptions that failed, one for each mote that a frame did not reach. Orange: frames that their sender gave "
+        f"up. Beside them {sent:,.0f} frames were sent and {received:,.0f} receptions succeeded.",
+    )
+
+
 AXIS_NAMES = {
     "sensor.interval_s": "sampling interval, s",
     "network.nodes": "nodes",

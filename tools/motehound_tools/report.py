@@ -30,7 +30,13 @@ MEANING = {
     "frames_sent_reports": "of these reports of readings",
     "frames_sent_requests": "of these requests of the head for readings",
     "frames_received": "receptions, one for each mote in range",
+    "frames_sent_hellos": "of these hellos to the neighbours",
+    "frames_sent_landmarks": "of these landmarks, which say where the head is",
+    "frames_sent_syncs": "of these synchronisations of the clocks",
+    "frames_repeated": "of the frames sent those sent again for want of an acknowledgement",
     "frames_lost": "receptions that failed",
+    **{f"frames_lost_{reason}": f"of these {said}" for reason, said in figures.LOST_AT_RECEIVER.items()},
+    **{f"frames_lost_{reason}": said for reason, said in figures.LOST_AT_SENDER.items()},
     "readings": "samples taken by all motes",
     "readings_refused": "samples out of range or out of time",
     "reports": "readings that a mote reported",
@@ -39,6 +45,16 @@ MEANING = {
     "measurements": "reports that reached the head in time",
     "measurements_late": "reports that reached the head too late",
     "measurements_overflowed": "reports that gave way to stronger ones for want of room",
+    "delivery_share": "share of the reports that reached the head, in time or late",
+    "clock_error_p99_ms": "99th percentile of the error of the motes' network time, ms",
+    "lifetime_s": "until the first battery was empty, s",
+    "lifetime_half_s": "until half of the batteries were empty, s",
+    "motes_dead": "motes whose battery is empty at the end",
+    "energy_mj": "energy used by all motes but the one on mains, mJ",
+    **{f"energy_mj_{cause}": f"of this for {said}, mJ" for cause, (said, _) in figures.CAUSES.items()},
+    **{f"energy_mj_state_{state}": f"of this while {said}, mJ" for state, (said, _) in figures.STATES.items()},
+    "events": "that motes handled: readings, frames, alarms",
+    "windows": "of simulated time that the motes were run through together",
 }
 HEADLINES = (
     ("position_median_m", "median error", "m"),
@@ -120,6 +136,11 @@ def pictures(results: Output) -> list[Picture]:
     return [picture for picture in drawn if picture]
 
 
+def network_pictures(results: Output) -> list[Picture]:
+    drawn = [figures.energy_picture(results), figures.losses_picture(results)]
+    return [picture for picture in drawn if picture]
+
+
 def render(found: Output | Sweep) -> str:
     first = found.outputs[0] if isinstance(found, Sweep) else found
     environment = Environment(
@@ -150,6 +171,7 @@ def render(found: Output | Sweep) -> str:
         columns=columns,
         middle_value=f"{sweep.values[len(sweep.values) // 2]:g}" if sweep else "",
         pictures=pictures(middle),
+        network=network_pictures(middle),
         statistics=statistics(middle),
         has_pooled=bool(middle.summary.get("pooled")),
         scenario=json.dumps(middle.scenario.sections, indent=2) if middle.scenario else "",

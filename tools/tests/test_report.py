@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import write_output
 
-from motehound_tools import metrics, output, sweep
+from motehound_tools import figures, metrics, output, sweep
 from motehound_tools.report import number
 
 TOOLS = Path(__file__).resolve().parents[1]
@@ -74,6 +74,47 @@ def test_same_folder_same_bytes(folder: Path) -> None:
     for name in ("a.html", "b.html"):
         assert call("report", folder, "--html", folder / name).returncode == 0
     assert (folder / "a.html").read_bytes() == (folder / "b.html").read_bytes()
+
+
+def test_page_shows_the_network(folder: Path) -> None:
+    summary = json.loads((folder / "summary.json").read_text())
+    sizes = {
+        "energy_mj": 3000.0,
+        "energy_mj_routing": 1000.0,
+        "energy_mj_idle": 2000.0,
+        "energy_mj_state_listen": 2500.0,
+        "energy_mj_state_transmit": 500.0,
+        "lifetime_s": 77.0,
+        "frames_sent": 9.0,
+        "frames_received": 90.0,
+        "frames_lost_collision": 12.0,
+        "frames_lost_busy": 3.0,
+        "frames_lost_jammed": 0.0,
+    }
+    for name, size in sizes.items():
+        summary["metrics"][name] = {"mean": size, "std": 0.0, "median": size, "p95": size, "n": 3}
+    (folder / "summary.json").write_text(json.dumps(summary))
+    assert call("report", folder).returncode == 0
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    said = {str(image["alt"]).partition(".")[0]: str(image["alt"]) for image in page.images}
+    assert "used 3 J a run" in said["Energy"] and "after 77 s" in said["Energy"]
+    assert "9 frames were sent" in said["Frames lost"]
+    found = output.read(folder)
+    assert isinstance(found, output.Output)
+    drawn = figures.losses_picture(found)
+    assert drawn and "collision" in drawn.svg and "busy" in drawn.svg and "jammed" not in drawn.svg
+
+
+@pytest.mark.skipif("MOTEHOUND" not in os.environ, reason="no command to ask")
+def test_metrics_of_the_command_are_known() -> None:
+    told = subprocess.run([os.environ["MOTEHOUND"], "list", "--metrics"], capture_output=True, text=True, check=True)
+    names = [line.split()[0] for line in told.stdout.splitlines()]
+    causes = [name for name in names if name.startswith("energy_mj_") and not name.startswith("energy_mj_state_")]
+    assert [name.removeprefix("energy_mj_") for name in causes] == list(figures.CAUSES)
+    states = [name.removeprefix("energy_mj_state_") for name in names if name.startswith("energy_mj_state_")]
+    assert states == list(figures.STATES)
+    lost = [name.removeprefix("frames_lost_") for name in names if name.startswith("frames_lost_")]
+    assert set(lost) == {*figures.LOST_AT_RECEIVER, *figures.LOST_AT_SENDER}
 
 
 def test_page_of_a_sweep(tmp_path: Path) -> None:
