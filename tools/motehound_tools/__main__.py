@@ -114,12 +114,13 @@ def perform(arguments: argparse.Namespace) -> None:
 
         print(f"{arguments.out}: {export.write(arguments.log, arguments.to, arguments.out)}")
     elif arguments.command == "view":
-        from . import recording, view
+        from . import recording
+        from .view import server
 
         if not 0 <= arguments.port < 65536:
             raise Failure(f"--port {arguments.port}: expected 0 to 65535")
         found = recording.of_log(arguments.log) if arguments.log else recording.of_bus(arguments.bus)
-        view.serve(found, live=arguments.log is None, port=arguments.port)
+        server.serve(found, live=arguments.log is None, port=arguments.port)
     elif arguments.command == "bound":
         from . import bound
         from .scenario import Scenario

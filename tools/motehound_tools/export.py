@@ -1,7 +1,7 @@
 """LCM logs as CSV, MCAP or rerun's recordings.
 
-Times of a log that `motehound run --log` wrote are simulated; those of lcm-logger are the wall clock's. Every message of ours carries
-the simulated time besides.
+Times of a log that `motehound run --log` wrote are simulated; those of lcm-logger are the wall clock's. Every message
+of ours carries the simulated time besides.
 """
 
 from __future__ import annotations

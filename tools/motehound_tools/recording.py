@@ -183,9 +183,8 @@ def of_bus(url: str) -> Recording:
         with quiet():
             bus = lcm.LCM(url)
     except (RuntimeError, ValueError) as error:
-        raise Failure(
-            f"--bus {url}: expected a URL that LCM serves, such as udpm://239.255.76.67:7667?ttl=0 (which needs a multicast route)"
-        ) from error
+        example = "udpm://239.255.76.67:7667?ttl=0 (which needs a multicast route)"
+        raise Failure(f"--bus {url}: expected a URL that LCM serves, such as {example}") from error
     recording = Recording(url)
     heard = bus.subscribe("MOTEHOUND_.*", lambda _, data: recording.take(data))
     heard.set_queue_capacity(0)  # without limit: a simulation tells faster than it is drawn

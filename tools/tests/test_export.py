@@ -42,14 +42,14 @@ def test_csv_has_every_message_and_value(tmp_path: Path) -> None:
     assert str(tally) == f"{len(told)} messages on 6 channels"
     for channel in ("RUN_BEGIN", "NODE", "TRUTH", "FRAME", "TRACK", "RUN_END"):
         rows = table(tmp_path / "out" / f"MOTEHOUND_{channel}.csv")
-        sent = [message for name, message in told if name == channel]
+        sent = [one for name, one in told if name == channel]
         assert len(rows) == len(sent)
-        for row, message in zip(rows, sent):
-            assert float(row["log_time_s"]) == message.time_s
-            for name in message.__slots__:
-                value = getattr(message, name)
+        for row, one in zip(rows, sent):
+            assert float(row["log_time_s"]) == one.time_s
+            for name in one.__slots__:
+                value = getattr(one, name)
                 if name == "data":
-                    assert bytes.fromhex(row["data_hex"]) == value[: message.length]
+                    assert bytes.fromhex(row["data_hex"]) == value[: one.length]
                 elif isinstance(value, str):
                     assert row[name] == value
                 else:

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from logs import frame, message, small_run, track, write_log
 
-from motehound_tools import recording, scene
+from motehound_tools import recording
 from motehound_tools.event_log import EventLog
 from motehound_tools.recording import Recording, Table
+from motehound_tools.view import scene
 
 
 def taken(told: list) -> Recording:

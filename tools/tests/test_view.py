@@ -19,7 +19,7 @@ from browser import Browser
 from logs import program, simulated, small_run, write_log
 from PIL import Image
 
-from motehound_tools import view
+from motehound_tools.view.colours import MAP, TRACK
 
 TOOLS = Path(__file__).resolve().parents[1]
 OWN_NETWORK = "MOTEHOUND_OWN_NETWORK"
@@ -116,9 +116,9 @@ def test_page_shows_the_run(browser: Browser, served: Served, log: Path) -> None
     assert length(browser, "ellipses") == 1
     assert length(browser, "arcs") == length(browser, "pulses") > 5
     shot = browser.screenshot("dark.png")
-    assert pixels(shot, view.TRACK) > 300
+    assert pixels(shot, TRACK) > 300
     assert pixels(shot, "#151c26") > 200_000  # the dark cards
-    assert pixels(shot, view.MAP_COLOURS[0], 25) > 500
+    assert pixels(shot, MAP[0], 25) > 500
 
     browser.evaluate("document.getElementById('theme').click()")
     light = browser.screenshot("light.png")
@@ -157,12 +157,13 @@ def test_slider_play_and_keys_move_the_time(browser: Browser, served: Served) ->
 def test_mouse_hovers_and_zooms_and_the_layers_agree(browser: Browser, served: Served) -> None:
     opened(browser, f"{served.url}?time=40&play=0")
     legend = "document.querySelector('[data-layer=track]')"
-    hidden = "model('over').renderers.filter((one) => one.tags.includes('track')).map((one) => one.visible).join()"
+    hidden = "model('over').renderers.filter((one) => one.glyph.tags.includes('track')).map((one) => one.visible).join()"
     browser.evaluate(f"{legend}.click()")
     assert browser.evaluate(hidden) == "false,false,false"
     browser.evaluate(f"{legend}.click()")
     assert browser.evaluate(hidden) == "true,true,true"
-    frame = "(name) => { const box = Bokeh.index.get_by_id(model(name).id).frame.bbox; return [box.left, box.top, box.width, box.height] }"
+    frame = """(name) => { const box = Bokeh.index.get_by_id(model(name).id).frame.bbox;
+        return [box.left, box.top, box.width, box.height] }"""
     assert browser.evaluate(f"({frame})('map')") == browser.evaluate(f"({frame})('over')")
     ranges = "['map', 'over'].map((name) => [model(name).x_range.start, model(name).y_range.end])"
     before = browser.evaluate(ranges)
@@ -171,7 +172,8 @@ def test_mouse_hovers_and_zooms_and_the_layers_agree(browser: Browser, served: S
     time.sleep(0.5)
     after = browser.evaluate(ranges)
     assert after[0] == pytest.approx(after[1]) and after[0] != pytest.approx(before[0])
-    place = """(() => { const view = Bokeh.index.get_by_id(model('map').id), data = model('motes').data, box = view.canvas_view.el.getBoundingClientRect();
+    place = """(() => { const view = Bokeh.index.get_by_id(model('map').id), data = model('motes').data;
+        const box = view.canvas_view.el.getBoundingClientRect();
         const at = [...data.x.keys()].find((i) => Math.hypot(data.x[i] - 40, data.y[i] - 40) < 5);
         return [box.x + view.frame.x_scale.compute(data.x[at]), box.y + view.frame.y_scale.compute(data.y[at])] })()"""
     x, y = browser.evaluate(place)

@@ -1,0 +1,1 @@
+"""A page on localhost that shows a recording as it plays, served and drawn by Bokeh."""
