@@ -1,8 +1,9 @@
 #!/bin/sh
-# run.sh SOURCE_FOLDER MOTEHOUND: pytest on tools/, or skipped (77) where its environment is absent.
+# run.sh SOURCE_FOLDER MOTEHOUND: pytest on tools/, or skipped (77) where its environment is absent. Without the tests in a
+# browser: what a build can change in them shows in the others; tools/test python runs all.
 python=$1/.deps/venv/bin/python
 if ! "$python" -c 'import bokeh, jinja2, lcm, matplotlib, mcap, pytest, rich, scipy' 2>/dev/null; then
     echo "skipped: $python does not have the packages of tools/requirements.txt; run tools/setup"
     exit 77
 fi
-cd "$1/tools" && MOTEHOUND=$2 PYTHONDONTWRITEBYTECODE=1 exec "$python" -m pytest -q -p no:cacheprovider tests
+cd "$1/tools" && MOTEHOUND=$2 PYTHONDONTWRITEBYTECODE=1 exec "$python" -m pytest -q -p no:cacheprovider -m "not browser" tests

@@ -1,7 +1,7 @@
 """LCM event logs that may be damaged.
 
 The format is LCM's: each event is a sync word, a number, a time, two lengths, the channel's name and the data, all
-big-endian. LCM's own reader ends at the first event that is broken; this one counts it and goes on at the next sync word.
+big-endian. LCM's own reader ends at the first broken event; this one counts it and goes on at the next sync word.
 """
 
 from __future__ import annotations

@@ -47,6 +47,9 @@ class Served:
         assert errors == ""
 
 
+needs_browser = pytest.mark.browser
+
+
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return simulated(tmp_path_factory.mktemp("run") / "exp1", "--set", "metrics.mote_interval_s=2")
@@ -103,6 +106,7 @@ def pixels(path: Path, colour: str, tolerance: int = 12) -> int:
     return int((np.abs(image - wanted).max(axis=2) <= tolerance).sum())
 
 
+@needs_browser
 def test_page_shows_the_run(browser: Browser, served: Served, log: Path) -> None:
     opened(browser, f"{served.url}?time=60.1&play=0&theme=dark&shade=sent")
     browser.until("document.title.includes('60.1 s')")
@@ -127,6 +131,7 @@ def test_page_shows_the_run(browser: Browser, served: Served, log: Path) -> None
         shutil.copy(shot, kept)
 
 
+@needs_browser
 def test_frames_of_the_whole_run_are_counted(browser: Browser, served: Served, log: Path) -> None:
     opened(browser, f"{served.url}?time=1000&play=0")
     sent = int(float(rows(log, "runs.csv")[0]["frames_sent"]))
@@ -135,6 +140,7 @@ def test_frames_of_the_whole_run_are_counted(browser: Browser, served: Served, l
     assert "Skipped" not in browser.evaluate("model('counters').text")
 
 
+@needs_browser
 def test_slider_play_and_keys_move_the_time(browser: Browser, served: Served) -> None:
     opened(browser, f"{served.url}?play=0")
     assert title(browser)[0] == 0.0
@@ -154,10 +160,11 @@ def test_slider_play_and_keys_move_the_time(browser: Browser, served: Served) ->
     assert browser.evaluate("model('slider').value") == pytest.approx(browser.evaluate("model('slider').end"), abs=0.02)
 
 
+@needs_browser
 def test_mouse_hovers_and_zooms_and_the_layers_agree(browser: Browser, served: Served) -> None:
     opened(browser, f"{served.url}?time=40&play=0")
     legend = "document.querySelector('[data-layer=track]')"
-    hidden = "model('over').renderers.filter((one) => one.glyph.tags.includes('track')).map((one) => one.visible).join()"
+    hidden = "model('over').renderers.filter((one) => one.glyph.tags == 'track').map((one) => one.visible).join()"
     browser.evaluate(f"{legend}.click()")
     assert browser.evaluate(hidden) == "false,false,false"
     browser.evaluate(f"{legend}.click()")
@@ -182,6 +189,7 @@ def test_mouse_hovers_and_zooms_and_the_layers_agree(browser: Browser, served: S
     browser.until("model('motes').inspected.indices.length > 0", 5)
 
 
+@needs_browser
 def test_runs_can_be_chosen_and_damage_is_told(browser: Browser, tmp_path: Path) -> None:
     path = write_log(tmp_path / "two.lcm", [*small_run(0), *small_run(1, nodes=16), ("OTHER", b"0123456789")])
     path.write_bytes(path.read_bytes() + b"\xed\xa1\xda\x01 cut off")
@@ -194,6 +202,7 @@ def test_runs_can_be_chosen_and_damage_is_told(browser: Browser, tmp_path: Path)
         assert "events of other types" in browser.evaluate("model('counters').text")
 
 
+@needs_browser
 def test_many_motes_and_odd_requests(browser: Browser, tmp_path: Path) -> None:
     path = write_log(tmp_path / "many.lcm", small_run(nodes=141 * 141, seconds=3))
     with Served(str(path)) as served:
@@ -231,6 +240,7 @@ def test_port_in_use(tmp_path: Path) -> None:
     )
 
 
+@needs_browser
 def test_running_simulation(tmp_path: Path) -> None:
     """In a network of its own, as the tests of the bus."""
     if OWN_NETWORK in os.environ:

@@ -65,8 +65,8 @@ class Motes:
 def frames_in_air(
     run: Run, motes: Motes, time: float, linger: float, colours: np.ndarray
 ) -> dict[str, dict[str, np.ndarray]]:
-    """Frames that went on the air within `linger` before: an arc to the addressee, a ring around who broadcasts. They fade
-    over that time; on the air they are much shorter."""
+    """Frames that went on the air within `linger` before: an arc to the addressee, a ring around who broadcasts. They
+    fade over that time; on the air they are much shorter."""
     frames = run.frames.between(time - linger, time)[-FRAMES_MAX:]
     sender, known = motes.index(frames["sender"])
     frames, sender = frames[known], sender[known]
