@@ -253,7 +253,7 @@ static int tell_motes(struct network *network)
         const struct mote_state told = {.energy_mj =
                                             accounted ? 1e3 * energy_used_j(ledger, i, network->now) : (double)NAN,
                                         .battery_left = accounted ? energy_battery_left(ledger, i, network->now) : 1,
-                                        .alive = !accounted || !energy_is_dead(ledger, i),
+                                        .alive = !accounted || energy_is_on(ledger, i),
                                         .clock_error_ms = network->clock_error_s ? 1e3 * network->clock_error_s[i] : 0};
         config->observer->mote(config->observer->context, network_time_s(network), roster_id(config->roster, i), &told);
     }

@@ -197,6 +197,8 @@ void energy_run(struct energy *energy, sim_time now, void (*dies)(void *context,
 
 bool energy_is_dead(const struct energy *energy, uint32_t mote) { return mote_of(energy, mote)->dead; }
 
+bool energy_is_on(const struct energy *energy, uint32_t mote) { return mote_of(energy, mote)->state != ENERGY_OFF; }
+
 /* A mote's ledger until `now`, the original untouched. */
 static struct energy_mote settled(const struct energy *energy, uint32_t index, sim_time now)
 {

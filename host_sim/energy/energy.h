@@ -99,6 +99,9 @@ void energy_run(struct energy *energy, sim_time now, void (*dies)(void *context,
 
 bool energy_is_dead(const struct energy *energy, uint32_t mote);
 
+/* Neither dead nor switched off. */
+bool energy_is_on(const struct energy *energy, uint32_t mote);
+
 /* What `mote` has used until `now`, J. */
 void energy_of_mote(const struct energy *energy, uint32_t mote, sim_time now,
                     double joules[ENERGY_STATES][ENERGY_CAUSES]);
