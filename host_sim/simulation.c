@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+enum power { POWER_ON, POWER_OFF, POWER_DEAD };
+
 struct run {
     const struct observer *observer;
     struct roster roster;
@@ -16,6 +18,8 @@ struct run {
     struct sensors sensors;
     double *concentrations;
     int32_t *counts;
+    struct faults faults;
+    enum power *power; /* of each node; NULL where the faults leave all on */
     sim_time interval;
     uint64_t instants, next; /* in all, and the one to come */
     sim_time end;
@@ -43,6 +47,23 @@ static void report(void *context, double now_s, double time_s, const struct mh_e
     }
 }
 
+/* Nodes die and restart at instants of the world. */
+static void switch_nodes(struct run *run, double time_s)
+{
+    for (uint32_t i = 0; run->power && i < run->roster.deployment.count; i++) {
+        const enum power before = run->power[i];
+        if (before == POWER_DEAD) {
+            continue;
+        }
+        run->power[i] = faults_hit(&run->faults, FAULT_DEAD, time_s, i)     ? POWER_DEAD
+                        : faults_hit(&run->faults, FAULT_REBOOT, time_s, i) ? POWER_OFF
+                                                                            : POWER_ON;
+        if ((before == POWER_ON) != (run->power[i] == POWER_ON)) {
+            network_power(&run->network, i, before != POWER_ON);
+        }
+    }
+}
+
 static int sample(void *context)
 {
     struct run *run = context;
@@ -61,8 +82,9 @@ static int sample(void *context)
         run->concentrations[i] = field_concentration(&run->field, node->x_m, node->y_m);
     }
     sensors_read(&run->sensors, instant, run->concentrations, run->counts);
+    switch_nodes(run, time_s);
     for (size_t i = 0; i < deployment->count; i++) {
-        if (!sensors_lost(&run->sensors, instant, time_s, i)) {
+        if ((!run->power || run->power[i] == POWER_ON) && !sensors_lost(&run->sensors, instant, time_s, i)) {
             network_reading(&run->network, (uint32_t)i, run->counts[i], 0);
         }
     }
@@ -73,13 +95,24 @@ static int sample(void *context)
 static int sample_one(void *context)
 {
     struct run *run = context;
-    network_reading(&run->network, traffic_take(&run->traffic), 0, 0);
+    const uint32_t node = traffic_take(&run->traffic);
+    switch_nodes(run, network_time_s(&run->network));
+    if (!run->power || run->power[node] == POWER_ON) {
+        network_reading(&run->network, node, 0, 0);
+    }
     return network_schedule(&run->network, traffic_next(&run->traffic));
 }
 
 static int make_world(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
     const size_t nodes = run->roster.deployment.count;
+    faults_make(&run->faults, scenario, seed);
+    if (faults_include(&run->faults, FAULT_DEAD) || faults_include(&run->faults, FAULT_REBOOT)) {
+        run->power = calloc(nodes, sizeof *run->power);
+        if (!run->power) {
+            return -1;
+        }
+    }
     run->interval = (sim_time)run->roster.kit.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     if (scenario->source.path == PATH_NONE) {
         run->end = (sim_time)(scenario->source.duration_s * SIM_TIME_PER_S);
@@ -122,6 +155,7 @@ static void tear_down(struct run *run)
     network_free(&run->network);
     sensors_free(&run->sensors);
     free(run->counts);
+    free(run->power);
     free(run->concentrations);
     field_free(&run->field);
     traffic_free(&run->traffic);

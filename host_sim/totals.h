@@ -26,6 +26,7 @@
     X(FRAMES_LOST_DEAD, "frames_lost_dead", c->frames_lost_by[LOSS_DEAD], "of the receptions that failed, because the receiver was dead, or the sender died over it")\
     X(FRAMES_LOST_JAMMED, "frames_lost_jammed", c->frames_lost_by[LOSS_JAMMED], "of the receptions that failed, in a jammed zone")                     \
     X(FRAMES_LOST_PARTITION, "frames_lost_partition", c->frames_lost_by[LOSS_PARTITION], "of the receptions that failed, by a partition of the network")\
+    X(FRAMES_LOST_MUTE, "frames_lost_mute", c->frames_lost_by[LOSS_MUTE], "of the receptions that failed, because the head's radio was mute")             \
     X(FRAMES_LOST_RANGE, "frames_lost_range", c->frames_lost_by[LOSS_RANGE], "of the receptions that failed, because the addressee was out of range")  \
     X(FRAMES_LOST_BUSY, "frames_lost_busy", c->frames_lost_by[LOSS_BUSY], "frames given up because the channel was never free")                        \
     X(FRAMES_LOST_NO_ACK, "frames_lost_no_ack", c->frames_lost_by[LOSS_NO_ACK], "frames given up for want of an acknowledgement")                      \

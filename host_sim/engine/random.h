@@ -19,7 +19,8 @@ enum random_purpose {
     RANDOM_FAULTS, /* whom they hit */
     RANDOM_SPIKES,
     RANDOM_RADIO_BACKOFF,
-    RANDOM_RADIO_SHADOWING
+    RANDOM_RADIO_SHADOWING,
+    RANDOM_RADIO_BURST
 };
 
 struct random_stream {

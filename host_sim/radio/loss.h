@@ -11,6 +11,7 @@ enum loss_reason {
     LOSS_DEAD, /* the receiver, or the sender before the frame was out */
     LOSS_JAMMED,
     LOSS_PARTITION,
+    LOSS_MUTE,  /* the radio of the head is out of order */
     LOSS_RANGE, /* the addressee is out of range */
     LOSS_BUSY,  /* the channel was never free */
     LOSS_NO_ACK,

@@ -67,9 +67,13 @@ struct radio_mote {
 struct radio_config radio_config_of(const struct scenario *scenario, double range_m)
 {
     struct radio_config config = {.profile = *radio_profile_find(scenario->radio.profile),
-                                  .loss = scenario->radio.loss,
+                                  .channel = {.loss = scenario->radio.loss,
+                                              .burst_loss = scenario->radio.burst_loss,
+                                              .good_s = scenario->radio.burst_good_s,
+                                              .bad_s = scenario->radio.burst_bad_s},
                                   .queue = (unsigned)scenario->radio.queue};
     struct radio_profile *profile = &config.profile;
+    faults_make(&config.channel.faults, scenario, 0); /* those of the channel are not drawn */
     if (!profile->contention) {
         profile->bitrate_bps = scenario->radio.bitrate_bps;
     }
@@ -126,7 +130,6 @@ int radio_make(struct radio *radio, const struct radio_config *config, const dou
 {
     *radio = (struct radio){.config = *config,
                             .propagation = propagation_make(&config->propagation, count, seed),
-                            .channel = {config->loss, random_stream(seed, RANDOM_RADIO_LOSS), count},
                             .turnaround = rounded(config->profile.turnaround_us),
                             .backoff_stream = random_stream(seed, RANDOM_RADIO_BACKOFF),
                             .free_frame = NONE};
@@ -143,6 +146,7 @@ int radio_make(struct radio *radio, const struct radio_config *config, const dou
     radio->receivers = calloc(count, sizeof *radio->receivers);
     radio->found = malloc(count * sizeof *radio->found);
     if (!radio->motes || !radio->open || !radio->receivers || !radio->found ||
+        channel_make(&radio->channel, &config->channel, count, seed) ||
         air_make(&radio->air, &radio->places, radio->reach_m + disturbs_m, longest + radio->turnaround)) {
         radio_free(radio);
         return -1;
@@ -164,6 +168,7 @@ void radio_free(struct radio *radio)
     free(radio->open);
     free(radio->frames);
     free(radio->found);
+    channel_free(&radio->channel);
     places_free(&radio->places);
     air_free(&radio->air);
     event_queue_free(&radio->events);

@@ -38,7 +38,7 @@
 struct radio_config {
     struct radio_profile profile;
     struct propagation_config propagation;
-    double loss;    /* probability that a receiver loses a frame */
+    struct channel_config channel;
     unsigned queue; /* frames a radio holds, the one being sent included; further ones are refused */
 };
 

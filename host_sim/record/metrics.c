@@ -95,6 +95,31 @@ static bool lost(const struct recorder *recorder, const struct scenario *scenari
     return false;
 }
 
+/* Positions with a covariance and a truth, those among them that the covariance covers, and the longest succession of others of a target. */
+struct coverage {
+    size_t positions, covered, longest;
+};
+
+static struct coverage coverage_of(const struct recorder *recorder)
+{
+    struct coverage coverage = {0, 0, 0};
+    size_t beyond[TARGETS] = {0};
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        const motehound_track_t *track = &recorder->tracks[i];
+        const double sd_m = sqrt((track->cov_xx_m2 + track->cov_yy_m2) / 2);
+        size_t *succession = &beyond[(uint8_t)track->target];
+        if (!track->true_known || !(sd_m > 0)) {
+            continue;
+        }
+        const bool covered = error_of(track) <= 3 * sd_m;
+        *succession = covered ? 0 : *succession + 1;
+        coverage.positions++;
+        coverage.covered += covered;
+        coverage.longest = *succession > coverage.longest ? *succession : coverage.longest;
+    }
+    return coverage;
+}
+
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT])
 {
@@ -111,6 +136,10 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
     metrics_of_errors(errors, values);
     values[METRIC_TRACKED_SHARE] = truth ? (double)tracked / (double)recorder->samples : (double)NAN;
     values[METRIC_TRACK_LOST] = truth ? lost(recorder, scenario) : (double)NAN;
+    const struct coverage coverage = coverage_of(recorder);
+    const bool stated = coverage.positions > 0;
+    values[METRIC_COVERED_SHARE] = stated ? (double)coverage.covered / (double)coverage.positions : (double)NAN;
+    values[METRIC_OVERCONFIDENT_SAMPLES] = stated ? (double)coverage.longest : (double)NAN;
     values[METRIC_ESTIMATES] = (double)recorder->track_count;
     memcpy(&values[METRIC_FIRST_TOTAL], recorder->totals, sizeof recorder->totals);
 }

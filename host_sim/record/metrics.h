@@ -29,6 +29,8 @@ struct errors {
 #define METRICS_OF_TRACK(X)                                                                                                 \
     X(TRACKED_SHARE, "tracked_share", "share of the sampling instants with the source present that gave a position")        \
     X(TRACK_LOST, "track_lost", "1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates, else 0") \
+    X(COVERED_SHARE, "covered_share", "share of the positions whose error was at most three times the standard deviation that they state") \
+    X(OVERCONFIDENT_SAMPLES, "overconfident_samples", "longest succession of positions whose error was larger than that")   \
     X(ESTIMATES, "estimates", "positions that the head reported")
 /* clang-format on */
 

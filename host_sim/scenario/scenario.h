@@ -71,7 +71,9 @@ struct scenario {
         double delay_s;     /* of one hop, besides the air time */
         double bitrate_bps; /* gives the air time */
         double loss;        /* probability that a frame is lost, each receiver independently */
-        char *profile;      /* ideal, 802154 or cc1000 */
+        double burst_loss, burst_good_s,
+            burst_bad_s; /* the same in bursts; mean duration of what they last and the time between */
+        char *profile;   /* ideal, 802154 or cc1000 */
         enum propagation_kind propagation;
         double path_loss_exponent, reference_loss_db; /* of the path; loss at 1 m */
         double shadowing_db;                          /* standard deviation */

@@ -4,7 +4,15 @@
 
 void faults_make(struct faults *faults, const struct scenario *scenario, uint64_t seed)
 {
-    *faults = (struct faults){.every_s = scenario->faults.every_s, .stream = random_stream(seed, RANDOM_FAULTS)};
+    const double angle = scenario->faults.partition.angle_rad;
+    *faults = (struct faults){.every_s = scenario->faults.every_s,
+                              .stream = random_stream(seed, RANDOM_FAULTS),
+                              .line_x = -sin(angle),
+                              .line_y = cos(angle),
+                              .jam_x_m = scenario->faults.jam.x_m,
+                              .jam_y_m = scenario->faults.jam.y_m,
+                              .jam_radius_m = scenario->faults.jam.radius_m};
+    faults->line_at = scenario->faults.partition.x_m * faults->line_x + scenario->faults.partition.y_m * faults->line_y;
     const struct {
         double share, from_s, for_s;
     } given[FAULTS] = {
@@ -51,4 +59,17 @@ bool faults_hit(const struct faults *faults, enum fault fault, double time_s, ui
     }
     const uint64_t draw = (uint64_t)periods(faults, time_s) * FAULTS + (uint64_t)fault;
     return random_uniform(faults->stream, draw << 32 | mote) < faults->windows[fault].share;
+}
+
+bool faults_part(const struct faults *faults, double time_s, double ax_m, double ay_m, double bx_m, double by_m)
+{
+    const bool a_beyond = ax_m * faults->line_x + ay_m * faults->line_y > faults->line_at;
+    const bool b_beyond = bx_m * faults->line_x + by_m * faults->line_y > faults->line_at;
+    return a_beyond != b_beyond && faults_are_on(faults, FAULT_PARTITION, time_s);
+}
+
+bool faults_jam(const struct faults *faults, double time_s, double x_m, double y_m)
+{
+    const double x = x_m - faults->jam_x_m, y = y_m - faults->jam_y_m;
+    return x * x + y * y <= faults->jam_radius_m * faults->jam_radius_m && faults_are_on(faults, FAULT_JAM, time_s);
 }

@@ -28,6 +28,8 @@ struct faults {
         double share, from_s, until_s; /* within each period of every_s */
     } windows[FAULTS];
     struct random_stream stream;
+    double line_x, line_y, line_at; /* the partition: x line_x + y line_y = line_at */
+    double jam_x_m, jam_y_m, jam_radius_m;
 };
 
 void faults_make(struct faults *faults, const struct scenario *scenario, uint64_t seed);
@@ -40,5 +42,11 @@ bool faults_are_on(const struct faults *faults, enum fault fault, double time_s)
 
 /* It is on at `time_s` and hits `mote`: each with the fault's share as probability, drawn anew for every fault and every period. */
 bool faults_hit(const struct faults *faults, enum fault fault, double time_s, uint32_t mote);
+
+/* The partition lies between two places at `time_s`. */
+bool faults_part(const struct faults *faults, double time_s, double ax_m, double ay_m, double bx_m, double by_m);
+
+/* A place is jammed at `time_s`. */
+bool faults_jam(const struct faults *faults, double time_s, double x_m, double y_m);
 
 #endif

@@ -165,7 +165,7 @@ static void losses_are_made_up_for(void)
     enum { FRAMES = 5000 };
     const double p = 0.3, s = (1 - p) * (1 - p), q = 1 - s;
     struct radio_config config = disc("802154");
-    config.loss = p;
+    config.channel.loss = p;
     const double x_m[] = {0, 50};
     make(&config, x_m, 2);
     for (unsigned i = 0; i < FRAMES; i++) {
@@ -429,7 +429,7 @@ static uint64_t busy_network(const char *profile, uint64_t seed, sim_time step, 
     enum { MOTES = 60, FRAMES = 600 };
     struct radio_config config = log_distance(profile);
     config.propagation.shadowing_db = 4;
-    config.loss = 0.1;
+    config.channel.loss = 0.1;
     double x_m[MOTES];
     const double y_m[MOTES] = {0};
     const struct random_stream stream = random_stream(4, RANDOM_DEPLOYMENT);
@@ -490,7 +490,7 @@ static void random_life(void)
         const struct random_stream stream = random_stream(20 + p, RANDOM_DEPLOYMENT);
         struct radio_config config = disc(profiles[p]);
         unsigned handed[MOTES] = {0};
-        config.loss = 0.1;
+        config.channel.loss = 0.1;
         config.queue = 4;
         for (unsigned i = 0; i < MOTES; i++) {
             x_m[i] = 500 * random_uniform(stream, i);

@@ -26,7 +26,7 @@ static struct radio_config ideal(double range_m, double loss)
 {
     return (struct radio_config){.profile = *radio_profile_find("ideal"),
                                  .propagation = {.kind = PROPAGATION_DISC, .range_m = range_m},
-                                 .loss = loss};
+                                 .channel = {.loss = loss}};
 }
 
 static void scatter(double width, double height)
