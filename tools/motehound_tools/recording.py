@@ -98,9 +98,11 @@ class Recording:
         except messages.Broken:
             self.broken += 1
             return
-        told = getattr(self, f"_{type(message).__name__}", None)
-        if told is None:
+        if message is None:
             self.unknown += 1
+            return
+        told = getattr(self, f"_{type(message).__name__}", None)
+        if told is None:  # ours, but nothing to see
             return
         if not 0.0 <= message.time_s <= TIME_MAX_S:
             self.broken += 1
@@ -186,7 +188,7 @@ def of_bus(url: str) -> Recording:
         example = "udpm://239.255.76.67:7667?ttl=0 (which needs a multicast route)"
         raise Failure(f"--bus {url}: expected a URL that LCM serves, such as {example}") from error
     recording = Recording(url)
-    heard = bus.subscribe("MOTEHOUND_.*", lambda _, data: recording.take(data))
+    heard = bus.subscribe("MOTEHOUND_(?!WORKER_).*", lambda _, data: recording.take(data))
     heard.set_queue_capacity(0)  # without limit: a simulation tells faster than it is drawn
 
     def follow() -> None:
