@@ -55,7 +55,10 @@ static void put_table(const struct session *session, struct results *results)
                                         METRIC_TRACKED_SHARE,
                                         METRIC_TRACK_LOST,
                                         METRIC_ESTIMATES,
-                                        METRIC_FRAMES_SENT};
+                                        METRIC_FRAMES_SENT,
+                                        METRIC_DELIVERY_SHARE,
+                                        METRIC_ENERGY_MJ,
+                                        METRIC_LIFETIME_S};
     double pooled[METRIC_ERRORS_COUNT];
     results_pooled(results, pooled);
     const struct scenario *scenario = session->batch.scenario;
