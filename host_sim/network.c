@@ -449,6 +449,7 @@ int network_count(struct network *network, struct simulation_counters *counters,
     counters->clock_known_share = clock_errors_known_share(&network->clock_errors);
     counters->motes = totals.motes;
     counters->head = totals.heads;
+    counters->protocol = totals.protocols;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);
     const struct radio_counters *radio = &network->radio.counters;
     counters->frames_repeated = radio->frames_repeated;

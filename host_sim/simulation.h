@@ -52,6 +52,7 @@ struct simulation_counters {
     uint64_t frames_lost_by[LOSS_REASONS], frames_repeated;
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
+    struct mh_protocol_counters protocol; /* summed over all motes */
     struct energy_totals energy; /* all NaN where energy is not accounted for */
     /* of the motes' network time, once it has settled; NaN where clocks are ideal */
     double clock_error_median_ms, clock_error_p99_ms, clock_known_share;

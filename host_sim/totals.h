@@ -36,7 +36,14 @@
     X(READINGS_UNSYNCHRONISED, "readings_unsynchronised", c->motes.readings_unsynchronised, "readings refused before the network time was known")  \
     X(REPORTS, "reports", c->motes.reports, "readings that a mote reported")                                                                       \
     X(REPORTS_ASKED, "reports_asked", c->motes.reports_asked, "of these reported only because the head asked")                                     \
-    X(REPORTS_NO_ROUTE, "reports_no_route", c->motes.reports_no_route, "of these lost for want of a next hop")                                     \
+    X(REPORTS_NO_ROUTE, "reports_no_route", c->motes.reports_no_route, "of these lost for want of a next hop, or of room in the queue")                                     \
+    X(MESSAGES_LOST_QUEUE, "messages_lost_queue", c->protocol.lost[MH_LOSS_QUEUE_FULL], "messages that a mote had no room for")                    \
+    X(MESSAGES_LOST_NO_ACK, "messages_lost_no_ack", c->protocol.lost[MH_LOSS_NOT_ACKNOWLEDGED], "messages given up after all attempts")            \
+    X(MESSAGES_LOST_NO_ROUTE, "messages_lost_no_route", c->protocol.lost[MH_LOSS_NO_ROUTE], "messages on their way given up for want of a next hop")\
+    X(MESSAGES_LOST_LOOP, "messages_lost_loop", c->protocol.lost[MH_LOSS_LOOP], "messages given up because they came back")                        \
+    X(MESSAGES_LOST_HOPS, "messages_lost_hops", c->protocol.lost[MH_LOSS_HOPS], "messages given up after too many hops")                           \
+    X(MESSAGES_DUPLICATE, "messages_duplicate", c->protocol.lost[MH_LOSS_DUPLICATE], "messages that a mote got again, and did not take")           \
+    X(MESSAGES_RETRIED, "messages_retried", c->protocol.retries, "messages that a mote sent again, beside what its radio does")                    \
     X(MEASUREMENTS, "measurements", c->head.measurements, "reports that reached the head in time")                                                 \
     X(MEASUREMENTS_LATE, "measurements_late", c->head.late, "reports that reached the head too late")                                              \
     X(MEASUREMENTS_OVERFLOWED, "measurements_overflowed", c->head.overflowed, "reports that gave way to stronger ones for want of room")           \

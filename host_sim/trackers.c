@@ -84,13 +84,28 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
     return -1;
 }
 
+static void set_up_collection(struct protocol_choice *choice, const struct scenario *scenario)
+{
+    const uint32_t range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);
+    if (scenario->protocol.routing == ROUTING_TREE) {
+        choice->protocol = &mh_protocol_collection;
+        mh_collection_config_default(&choice->config.collection);
+        choice->config.collection.range_mm = range_mm;
+    } else {
+        struct mh_geographic_collection_config *config = &choice->config.geographic;
+        choice->protocol = &mh_protocol_geographic;
+        mh_geographic_collection_config_default(config);
+        config->collection.range_mm = range_mm;
+        config->hello_period = (mh_tick)lround(scenario->protocol.hello_s * MH_TICKS_PER_S);
+        config->faces = scenario->protocol.routing == ROUTING_GEOGRAPHIC;
+    }
+}
+
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
                     size_t error_size)
 {
     if (strcmp(name, mh_protocol_collection.name) == 0) {
-        choice->protocol = &mh_protocol_collection;
-        mh_collection_config_default(&choice->config.collection);
-        choice->config.collection.range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);
+        set_up_collection(choice, scenario);
         return 0;
     }
     if (strcmp(name, mh_protocol_direct.name) == 0) {

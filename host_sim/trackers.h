@@ -5,6 +5,7 @@
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
 #include "motehound/direct.h"
+#include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/range.h"
 #include "scenario/scenario.h"
@@ -27,6 +28,7 @@ struct protocol_choice {
     const struct mh_protocol *protocol;
     union {
         struct mh_collection_config collection;
+        struct mh_geographic_collection_config geographic;
         struct mh_direct_config direct;
         struct chatter_config chatter;
     } config;

@@ -81,8 +81,9 @@ static void add(void *to, const void *from, size_t size)
 }
 
 void host_totals_add(struct host_totals *totals, const struct mh_mote_counters *motes,
-                     const struct mh_head_counters *heads)
+                     const struct mh_head_counters *heads, const struct mh_protocol_counters *protocols)
 {
     add(&totals->motes, motes, sizeof *motes);
     add(&totals->heads, heads, sizeof *heads);
+    add(&totals->protocols, protocols, sizeof *protocols);
 }

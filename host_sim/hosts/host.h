@@ -82,6 +82,7 @@ struct host_totals {
     uint64_t events; /* starts, stops, readings, frames heard, fates of frames, probes and alarms */
     struct mh_mote_counters motes;
     struct mh_head_counters heads;
+    struct mh_protocol_counters protocols;
 };
 
 struct host {
@@ -123,6 +124,6 @@ void host_actions_free(struct host_actions *actions);
 
 /* Add one set of counters to another. */
 void host_totals_add(struct host_totals *totals, const struct mh_mote_counters *motes,
-                     const struct mh_head_counters *heads);
+                     const struct mh_head_counters *heads, const struct mh_protocol_counters *protocols);
 
 #endif

@@ -127,11 +127,20 @@ static const struct mh_port port = {transmit, set_alarm, report, may_sleep};
 
 static mh_tick tick_now(const struct slot *slot) { return local_clock_tick(&slot->clock, slot->host->now); }
 
-static void start(struct slot *slot)
+static void count_mote(const struct slot *slot, struct host_totals *totals)
 {
     static const struct mh_head_counters no_head;
+    struct mh_protocol_counters protocol = {.retries = 0};
+    if (slot->mote.config && slot->config.protocol->count) { /* it has come up */
+        slot->config.protocol->count(slot->protocol_state, &protocol);
+    }
+    host_totals_add(totals, &slot->mote.counters, slot->head ? &slot->head->head.counters : &no_head, &protocol);
+}
+
+static void start(struct slot *slot)
+{
     struct in_process *host = slot->host;
-    host_totals_add(&host->past, &slot->mote.counters, slot->head ? &slot->head->head.counters : &no_head);
+    count_mote(slot, &host->past);
     memset(&slot->mote, 0, sizeof slot->mote);
     memset(slot->protocol_state, 0, host->protocol_size);
     if (slot->head) {
@@ -342,13 +351,12 @@ static int count(void *state, struct host_totals *totals, char *error, size_t er
 {
     (void)error;
     (void)error_size;
-    static const struct mh_head_counters no_head;
     const struct in_process *host = state;
     totals->events += host->past.events;
-    host_totals_add(totals, &host->past.motes, &host->past.heads);
+    host_totals_add(totals, &host->past.motes, &host->past.heads, &host->past.protocols);
     for (uint32_t i = 0; i < host->count; i++) {
         const struct slot *slot = slot_of(host, i);
-        host_totals_add(totals, &slot->mote.counters, slot->head ? &slot->head->head.counters : &no_head);
+        count_mote(slot, totals);
     }
     return 0;
 }

@@ -78,7 +78,9 @@ static int on_totals(void *context, unsigned worker, const motehound_worker_tota
     return add_counters(&totals->motes, sizeof totals->motes, message->motes, message->mote_counters, error,
                         error_size) != 0 ||
                    add_counters(&totals->heads, sizeof totals->heads, message->heads, message->head_counters, error,
-                                error_size) != 0
+                                error_size) != 0 ||
+                   add_counters(&totals->protocols, sizeof totals->protocols, message->protocols,
+                                message->protocol_counters, error, error_size) != 0
                ? -1
                : 0;
 }

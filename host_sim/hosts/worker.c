@@ -258,31 +258,37 @@ static void on_window(struct worker *worker, const motehound_worker_window_t *me
     }
 }
 
+/* Counters are nothing but 32-bit numbers. */
+static void widen(int64_t *to, const void *from, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t counter;
+        memcpy(&counter, (const uint8_t *)from + i * sizeof counter, sizeof counter);
+        to[i] = counter;
+    }
+}
+
 static void on_count(struct worker *worker, const motehound_worker_count_t *message)
 {
     enum {
         MOTE = sizeof(struct mh_mote_counters) / sizeof(uint32_t),
-        HEAD = sizeof(struct mh_head_counters) / sizeof(uint32_t)
+        HEAD = sizeof(struct mh_head_counters) / sizeof(uint32_t),
+        PROTOCOL = sizeof(struct mh_protocol_counters) / sizeof(uint32_t)
     };
     struct host *host = &worker->motes.host;
     struct host_totals totals = {0};
-    int64_t motes[MOTE], heads[HEAD];
-    uint32_t counters[MOTE > HEAD ? MOTE : HEAD];
+    int64_t motes[MOTE], heads[HEAD], protocols[PROTOCOL];
     size_t size;
     if (host->count(host->state, &totals, worker->error, sizeof worker->error) != 0) {
         answer_error(worker, message->number);
         return;
     }
-    memcpy(counters, &totals.motes, sizeof totals.motes);
-    for (size_t i = 0; i < MOTE; i++) {
-        motes[i] = counters[i];
-    }
-    memcpy(counters, &totals.heads, sizeof totals.heads);
-    for (size_t i = 0; i < HEAD; i++) {
-        heads[i] = counters[i];
-    }
+    widen(motes, &totals.motes, MOTE);
+    widen(heads, &totals.heads, HEAD);
+    widen(protocols, &totals.protocols, PROTOCOL);
     const motehound_worker_totals_t reply = {
-        worker->session, worker->number, message->number, (int64_t)totals.events, MOTE, motes, HEAD, heads};
+        worker->session, worker->number, message->number, (int64_t)totals.events, MOTE, motes, HEAD,
+        heads,           PROTOCOL,       protocols};
     uint8_t *bytes = worker_encode_totals(&reply, &size);
     answer(worker, message->number, WORKER_TOTALS, bytes, size);
 }

@@ -32,6 +32,8 @@ const struct scenario_key scenario_keys[] = {
     {"network.sink_x_m", KEY_NUMBER, AT(network.sink_x_m), "40", -1e5, 1e5, NULL, "where the head stands"},
     {"network.sink_y_m", KEY_NUMBER, AT(network.sink_y_m), "40", -1e5, 1e5, NULL, ""},
     {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection|direct|chatter", "how measurements reach the head; chatter: not at all, each node broadcasts 30 bytes once in sensor.interval_s"},
+    {"protocol.routing", KEY_CHOICE, AT(protocol.routing), "tree", 0, 0, "tree|geographic|greedy", "collection: reports travel up the tree of the head's beacons, or by places to the head's, with face routing around voids or without"},
+    {"protocol.hello_s", KEY_NUMBER, AT(protocol.hello_s), "10", 1, 600, NULL, "geographic, greedy: between a node's hellos to its neighbours"},
     {"traffic.sources", KEY_COUNT, AT(traffic.sources), "0", 0, 1e6, NULL, "path none: nodes that report once in sensor.interval_s, each at its own time"},
     {"sensor.interval_s", KEY_NUMBER, AT(sensor.interval_s), "1", 0.01, 3600, NULL, "between samples; in a replay the recording's own unless set"},
     {"sensor.relative_noise", KEY_NUMBER, AT(sensor.relative_noise), "0", 0, 1, NULL, "standard deviation as a share of the reading"},

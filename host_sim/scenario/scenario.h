@@ -26,6 +26,8 @@ enum propagation_kind { PROPAGATION_DISC, PROPAGATION_LOG_DISTANCE };
 
 enum sync_kind { SYNC_NONE, SYNC_FLOODING };
 
+enum routing_kind { ROUTING_TREE, ROUTING_GEOGRAPHIC, ROUTING_GREEDY };
+
 enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_FILE };
 
 struct scenario {
@@ -54,6 +56,10 @@ struct scenario {
         double sink_x_m, sink_y_m;
         char *protocol; /* `collection` */
     } network;
+    struct {
+        enum routing_kind routing;
+        double hello_s; /* between a node's hellos to its neighbours */
+    } protocol;
     struct {
         int64_t sources; /* nodes that report once in sensor.interval_s where source.path is none */
     } traffic;

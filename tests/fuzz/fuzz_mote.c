@@ -1,11 +1,13 @@
 /* A live mote under hostile frames, readings and clocks.
  *
- * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node. Then come events, each an opcode
+ * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node, bit 4 the protocol. Then come events, each an opcode
  * and its operands; see next_event(). Whatever happens: what the mote transmits are frames that it would take itself,
  * and what it reports are finite numbers. */
 #include "fuzz.h"
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
+#include "motehound/geographic.h"
+#include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/mote.h"
 #include "motehound/range.h"
@@ -24,6 +26,7 @@ struct world {
     struct mh_mote mote;
     mh_tick now, alarm;
     int alarm_set;
+    int geographic;
 };
 
 struct input {
@@ -88,14 +91,20 @@ static void raw_frame(struct world *world, struct input *input)
     mh_mote_frame(&world->mote, world->now, frame, length);
 }
 
-/* A frame with the right fingerprint and check sum, and any bytes in its fields. */
+/* A frame with the right fingerprints and check sum, and any bytes in its fields. */
 static void sound_frame(struct world *world, struct input *input)
 {
-    const struct mh_message message = {.kind = (enum mh_message_kind)(byte(input) % MH_MESSAGE_KINDS)};
+    const uint8_t choice = byte(input);
+    struct mh_message message = {.kind = (enum mh_message_kind)(choice % MH_MESSAGE_KINDS)};
     uint8_t frame[MH_FRAME_MAX];
-    size_t length;
+    size_t length, bare;
+    mh_wire_encode(&message, frame, &bare);
+    message.envelope = (enum mh_envelope_kind)(choice / MH_MESSAGE_KINDS % MH_ENVELOPE_KINDS);
     mh_wire_encode(&message, frame, &length);
-    bytes(input, frame + 8, length - 10);
+    if (length > bare) {
+        bytes(input, frame + 8, length - bare - 8);
+    }
+    bytes(input, frame + length - bare + 8, bare - 10);
     const uint16_t fcs = mh_wire_fcs(frame, length - 2);
     frame[length - 2] = (uint8_t)fcs;
     frame[length - 1] = (uint8_t)(fcs >> 8);
@@ -117,6 +126,23 @@ static void fresh_report(struct world *world, struct input *input)
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
     mh_report_from_measurement(&measurement, &message.as.report);
+    if (world->geographic) {
+        mh_geographic_address(&message, byte(input), (int16_t)byte(input), byte(input) % 8, &measurement.place);
+    }
+    mh_wire_encode(&message, frame, &length);
+    mh_mote_frame(&world->mote, world->now, frame, length);
+}
+
+/* Of a neighbour within 128 m, perhaps at this mote's own place. */
+static void near_hello(struct world *world, struct input *input)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
+                                       .as.hello = {.sender = byte(input) % 40,
+                                                    .x_mm = (byte(input) - 128) * 1000,
+                                                    .y_mm = (byte(input) - 128) * 1000,
+                                                    .sequence = byte(input) % 4}};
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
     mh_wire_encode(&message, frame, &length);
     mh_mote_frame(&world->mote, world->now, frame, length);
 }
@@ -130,7 +156,7 @@ static void reading(struct world *world, struct input *input)
 
 static void next_event(struct world *world, struct input *input)
 {
-    switch (byte(input) % 6) {
+    switch (byte(input) % 8) {
     case 0:
         raw_frame(world, input);
         break;
@@ -145,6 +171,12 @@ static void next_event(struct world *world, struct input *input)
         break;
     case 4:
         world->now += 16u * byte(input);
+        break;
+    case 5:
+        mh_mote_sent(&world->mote, world->now, (enum mh_sent)(byte(input) % 3));
+        break;
+    case 6:
+        near_hello(world, input);
         break;
     default:
         world->now += (mh_tick)byte(input) << byte(input) % 25;
@@ -176,9 +208,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     static union tracker_state tracker_state;
     static struct mh_head head;
-    struct mh_collection collection;
-    struct mh_collection_config protocol_config;
-    mh_collection_config_default(&protocol_config);
+    static union {
+        struct mh_collection collection;
+        struct mh_geographic_collection geographic;
+    } protocol_state;
+    struct mh_geographic_collection_config protocol_config;
+    mh_geographic_collection_config_default(&protocol_config);
+    const int geographic = (choice & 16) != 0;
     const struct mh_head_config head_config = {
         .tracker = tracker,
         .tracker_config = &tracker_config,
@@ -190,12 +226,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .id = 7,
         .sensor = &sensor,
         .head = choice & 4 ? NULL : &head_config,
-        .protocol = &mh_protocol_collection,
-        .protocol_config = &protocol_config,
-        .protocol_state = &collection,
+        .protocol = geographic ? &mh_protocol_geographic : &mh_protocol_collection,
+        .protocol_config = geographic ? (const void *)&protocol_config : &protocol_config.collection,
+        .protocol_state = &protocol_state,
         .head_state = &head,
     };
-    struct world world = {.now = choice & 8 ? 0xFFFFE000u : 5000}; /* also across the wrap of the ticks */
+    struct world world = {.geographic = geographic,
+                          .now = choice & 8 ? 0xFFFFE000u : 5000}; /* also across the wrap of the ticks */
     require(mh_mote_init(&world.mote, &config, &port, &world, world.now) == MH_OK);
     for (int i = 0; i < EVENTS_MAX && input.left > 0; i++) {
         next_event(&world, &input);

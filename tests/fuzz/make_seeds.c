@@ -22,11 +22,19 @@ static int save_frame(const char *folder, const char *name, const struct mh_mess
     return mh_wire_encode(message, frame, &length) == MH_OK ? save(folder, name, frame, length) : -1;
 }
 
-/* Every second six reports around a source that walks, then the time goes on: a track. */
+/* Every second six reports around a source that walks, then the time goes on: a track. The protocol `geographic` wants its neighbours first,
+ * envelopes around reports to itself, and to hear what becomes of what it sends. */
 static int save_track(const char *folder, const char *name, uint8_t choice)
 {
     uint8_t input[2048] = {choice};
     size_t length = 1;
+    const int geographic = choice & 16;
+    for (int neighbour = 0; geographic && neighbour < 6; neighbour++) {
+        const uint8_t event[] = {6, (uint8_t)neighbour, (uint8_t)(100 + 11 * neighbour), (uint8_t)(neighbour * 50), 1};
+        for (size_t i = 0; i < sizeof event; i++) {
+            input[length++] = event[i];
+        }
+    }
     for (int second = 0; second < 12; second++) {
         for (int node = 0; node < 6; node++) {
             const uint8_t event[] = {2,
@@ -35,8 +43,13 @@ static int save_track(const char *folder, const char *name, uint8_t choice)
                                      (uint8_t)(30 + node / 3 * 5),
                                      0,
                                      (uint8_t)(60 + node * 7),
-                                     (uint8_t)(100 + node * 20)};
-            for (size_t i = 0; i < sizeof event; i++) {
+                                     (uint8_t)(100 + node * 20),
+                                     (uint8_t)node,
+                                     (uint8_t)second,
+                                     (uint8_t)(node % 2 ? 7 : 1),
+                                     5,
+                                     (uint8_t)(node % 3)};
+            for (size_t i = 0; i < (geographic ? sizeof event : 7); i++) {
                 input[length++] = event[i];
             }
         }
@@ -73,9 +86,24 @@ int main(int argc, char **argv)
                                                       .sender_x_mm = -100,
                                                       .sender_y_mm = 200}};
     const char *wire = argv[1], *mote = argv[2];
+    const struct mh_message hello = {.kind = MH_MESSAGE_HELLO,
+                                     .as.hello = {.sender = 8, .x_mm = 7000, .y_mm = -3000, .sequence = 5}};
+    const struct mh_message landmark = {.kind = MH_MESSAGE_LANDMARK,
+                                        .as.landmark = {.beacon = beacon.as.beacon, .x_mm = 40000, .y_mm = 40000}};
+    struct mh_message route = report;
+    route.envelope = MH_ENVELOPE_ROUTE;
+    route.header.route = (mh_route_t){
+        .sender = 4, .origin = 5, .destination = 1, .x_mm = 40000, .y_mm = 40000, .sequence = 77, .hops = 3};
+    struct mh_message face = route;
+    face.envelope = MH_ENVELOPE_FACE;
+    face.header.entry = 5;
+    face.header.first = 4;
+    face.header.sender_x_mm = 9000;
     int failed = save_frame(wire, "beacon", &beacon) || save_frame(wire, "report", &report) ||
-                 save_frame(wire, "request", &request);
-    for (uint8_t choice = 0; choice < 12; choice++) {
+                 save_frame(wire, "request", &request) || save_frame(wire, "hello", &hello) ||
+                 save_frame(wire, "landmark", &landmark) || save_frame(wire, "route", &route) ||
+                 save_frame(wire, "face", &face);
+    for (uint8_t choice = 0; choice < 32; choice++) {
         char name[20];
         snprintf(name, sizeof name, "track%u", choice);
         failed = failed || save_track(mote, name, choice);

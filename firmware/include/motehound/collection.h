@@ -14,7 +14,8 @@
  * is nearer to the centre than the last relay, the request ends.
  *
  * Several sinks divide the field: each node belongs to the one with the fewest hops. Every mote relays, so every radio
- * listens all the time. Acknowledgements are the radio's business: a unicast frame that it loses is lost. */
+ * listens all the time. Acknowledgements are the radio's business: a unicast frame that it loses is lost, and counted. A node whose parent has
+ * not acknowledged three in a row, or sends it reports, asks its neighbours for another path of the same round or a newer one. */
 #ifndef MOTEHOUND_COLLECTION_H
 #define MOTEHOUND_COLLECTION_H
 
@@ -41,7 +42,7 @@ struct mh_collection {
     uint16_t round;                   /* newest heard (or, at the sink, begun) */
     uint8_t hops;                     /* to the sink; 0 there */
     bool joined;                      /* sink, parent, round and hops are known */
-    bool stale;                       /* ... but two rounds have not come */
+    bool stale;                       /* ... but two rounds have not come, or the parent is lost */
     bool tracking;                    /* the sink follows a track */
     bool beacon_waits, request_waits; /* to be relayed at ... */
     mh_tick beacon_time, request_time;
@@ -53,8 +54,8 @@ struct mh_collection {
         mh_tick time;
     } seen[MH_COLLECTION_SEEN];
     uint8_t seen_count, seen_next;
-    uint16_t
-        dropped; /* reports that had come MH_HOPS_MAX hops, came back to their origin, or found no path; saturates */
+    uint8_t refused;          /* unicasts to the parent in a row that were not acknowledged */
+    uint16_t lost[MH_LOSSES]; /* reports, by reason; saturates */
 };
 
 extern const struct mh_protocol mh_protocol_collection;

@@ -65,16 +65,20 @@
 #endif
 
 /* Messages that wait at a node to be sent to a neighbour, some 100 bytes each, and messages it remembers having taken, so that it takes
- * none twice, 8 bytes each. */
+ * none twice, 16 bytes each. */
 #ifndef MH_LINK_QUEUE_MAX
 #ifdef __AVR__
-#define MH_LINK_QUEUE_MAX 3
+#define MH_LINK_QUEUE_MAX 4
 #else
-#define MH_LINK_QUEUE_MAX 8
+#define MH_LINK_QUEUE_MAX 16
 #endif
 #endif
 #ifndef MH_LINK_SEEN_MAX
-#define MH_LINK_SEEN_MAX 16
+#ifdef __AVR__
+#define MH_LINK_SEEN_MAX 8
+#else
+#define MH_LINK_SEEN_MAX 32
+#endif
 #endif
 
 /* A message in an envelope that has been relayed this often is dropped and counted. A walk around a face takes up to twice as many hops as

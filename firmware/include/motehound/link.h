@@ -22,17 +22,6 @@ struct mh_link_config {
     mh_tick backoff; /* before the second attempt, ticks, 1 to 1,000; up to twice as long before the third, and so on */
 };
 
-/* Why a message went no farther from here. */
-enum mh_link_loss {
-    MH_LINK_QUEUE_FULL,
-    MH_LINK_NOT_ACKNOWLEDGED, /* attempts used up */
-    MH_LINK_NO_NEIGHBOUR,     /* no neighbour, or without face routing none nearer to the destination */
-    MH_LINK_UNREACHABLE, /* a whole face was walked around: the destination is in no part of the network that hangs together with this */
-    MH_LINK_HOPS,      /* MH_ROUTE_HOPS_MAX */
-    MH_LINK_DUPLICATE, /* taken before; no loss to the network */
-    MH_LINK_LOSSES
-};
-
 struct mh_link_message {
     struct mh_message message;
     uint8_t attempts; /* made */
@@ -50,11 +39,12 @@ struct mh_link {
     mh_tick retry_time;
     struct {
         mh_node_id origin;
+        mh_node_id sender, entry; /* MH_BROADCAST in MH_ENVELOPE_ROUTE */
         int16_t sequence, hops;
     } seen[MH_LINK_SEEN_MAX];
     uint8_t seen_count, seen_next;
-    uint16_t retries;              /* saturates, as do all counters here */
-    uint16_t lost[MH_LINK_LOSSES]; /* messages, by reason */
+    uint16_t retries;         /* saturates, as do all counters here */
+    uint16_t lost[MH_LOSSES]; /* messages, by reason */
 };
 
 /* What mh_link_sent has found out. */
@@ -65,7 +55,7 @@ enum mh_link_outcome {
     MH_LINK_BUSY   /* it did not go out; the neighbour is not to blame */
 };
 
-/* nominal configuration: 8 attempts, 4 ticks */
+/* nominal configuration: 6 attempts, 20 ticks */
 void mh_link_config_default(struct mh_link_config *config);
 
 /* `config` and `node` outlive the link. Errors: MH_ERR_ARGUMENT (a value of the configuration outside its range). */
@@ -76,8 +66,9 @@ enum mh_status mh_link_init(struct mh_link *link, const struct mh_link_config *c
 void mh_link_broadcast(struct mh_link *link, const struct mh_message *message);
 
 /* Take a message in an envelope, one's own or a neighbour's, to send it on. A message sent again bears the hop count it had; one that
- * came back another way bears another. In MH_ENVELOPE_ROUTE each node is passed once, so there the hop count does not matter; a
- * walk around a face may pass a node several times. Errors, each counted: MH_ERR_REPEATED (taken before), MH_ERR_CAPACITY. */
+ * came back another way bears another. In MH_ENVELOPE_ROUTE each node is passed once, so there the hop count does not matter. A
+ * walk around a face may pass a node several times, but never by the same edge in the same direction: one that does goes in a circle that is
+ * no face. Errors, each counted: MH_ERR_REPEATED (taken before), MH_ERR_NO_ROUTE (goes in a circle), MH_ERR_CAPACITY. */
 enum mh_status mh_link_take(struct mh_link *link, const struct mh_message *message);
 
 /* The same without the queue, at a message's destination. Errors: MH_ERR_REPEATED (counted). */
@@ -90,13 +81,16 @@ const struct mh_message *mh_link_due(struct mh_link *link, mh_tick now);
 void mh_link_send(struct mh_link *link, mh_node_id neighbour, const struct mh_message *leaving);
 
 /* Give the message that is due up, and count why. */
-void mh_link_drop(struct mh_link *link, enum mh_link_loss reason);
+void mh_link_drop(struct mh_link *link, enum mh_loss reason);
 
 /* Give the message that is due up because it has arrived. */
 void mh_link_finish(struct mh_link *link);
 
 /* The protocol's sent(). */
 enum mh_link_outcome mh_link_sent(struct mh_link *link, mh_tick now, enum mh_sent outcome);
+
+/* Add to `counters`. */
+void mh_link_count(const struct mh_link *link, struct mh_protocol_counters *counters);
 
 /* When a message that waits becomes due -> *time. Returns false if none waits. */
 bool mh_link_alarm(const struct mh_link *link, mh_tick *time);

@@ -51,7 +51,7 @@ struct mh_mote_counters {
     uint32_t readings_unsynchronised; /* refused because the network's time was not known yet */
     uint32_t reports;                 /* measurements handed to the protocol ... */
     uint32_t reports_asked;           /* ... of these, only because a head asked */
-    uint32_t reports_no_route;        /* ... of these, lost for want of a next hop */
+    uint32_t reports_no_route;        /* ... of these, lost for want of a next hop, or of room in its queue */
     uint32_t frames_sent;
     uint32_t frames_received; /* sound ones */
     uint32_t frames_corrupt;

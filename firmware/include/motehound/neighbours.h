@@ -48,6 +48,7 @@ struct mh_neighbours {
     struct mh_place place;
     uint16_t lifetime; /* units of 256 ticks */
     uint8_t capacity, count;
+    mh_node_id kept;                    /* gives way to nobody: see mh_neighbours_keep */
     uint16_t lost[MH_NEIGHBOUR_LOSSES]; /* saturating */
     struct mh_neighbour list[MH_NEIGHBOURS_MAX];
 };
@@ -60,6 +61,10 @@ enum mh_status mh_neighbours_init(struct mh_neighbours *table, mh_node_id id, co
 /* A hello came in. Cost: linear in the table; on an ATmega128 about 1 ms. Returns MH_OK, or MH_NONE if its sender is not kept.
  * Errors: MH_ERR_ARGUMENT (it bears this node's own identifier). */
 enum mh_status mh_neighbours_hello(struct mh_neighbours *table, mh_tick now, const mh_hello_t *hello);
+
+/* Keep `id`, the goal of many messages, whenever it is near, rather than a neighbour that is better by the rule above; its quality does not
+ * matter either. One identifier at a time; MH_BROADCAST, as after the start, for none. */
+void mh_neighbours_keep(struct mh_neighbours *table, mh_node_id id);
 
 /* Forget whoever was not heard for too long. To be called at least every two hours. */
 void mh_neighbours_age(struct mh_neighbours *table, mh_tick now);

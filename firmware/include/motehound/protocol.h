@@ -19,6 +19,23 @@ enum mh_sent {
     MH_SENT_BUSY    /* it never went out: the channel was not free, or the radio was full or off */
 };
 
+/* Why a message went no farther than a node. */
+enum mh_loss {
+    MH_LOSS_QUEUE_FULL,
+    MH_LOSS_NOT_ACKNOWLEDGED, /* however often it was sent */
+    MH_LOSS_NO_ROUTE,         /* no next hop */
+    MH_LOSS_LOOP,             /* it came back: there is no way from here, or two nodes take each other for the way */
+    MH_LOSS_HOPS,             /* too many */
+    MH_LOSS_DUPLICATE,        /* taken before; no loss to the network */
+    MH_LOSSES
+};
+
+/* What happened to the messages of one node or of many. */
+struct mh_protocol_counters {
+    uint32_t lost[MH_LOSSES];
+    uint32_t retries; /* messages sent once more, beside what the radio does on its own */
+};
+
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */
 struct mh_protocol_port {
     /* Send to one neighbour, or to all in range (MH_BROADCAST). sent() tells what became of it, in the order of sending. */
@@ -60,12 +77,14 @@ struct mh_protocol {
     void (*sent)(void *state, mh_tick now, enum mh_sent outcome);
     /* The time set with set_timer has come. Early and repeated calls do no harm. */
     void (*timer)(void *state, mh_tick now);
-    /* Hand on what this node measured. Errors: MH_ERR_NO_ROUTE. */
+    /* Hand on what this node measured. Errors: MH_ERR_NO_ROUTE, MH_ERR_CAPACITY (no more can wait to be sent). */
     enum mh_status (*publish)(void *state, mh_tick now, const struct mh_measurement *measurement);
     /* Head: ask the nodes in `interest` for the sample of instant `time`. Errors: MH_ERR_ARGUMENT (not a head). */
     enum mh_status (*ask)(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time);
     /* Head: tell the network that a track has begun or is lost. No effect on other motes. */
     void (*tell_tracking)(void *state, mh_tick now, bool tracking);
+    /* Add to `counters`. May be NULL. */
+    void (*count)(const void *state, struct mh_protocol_counters *counters);
 };
 
 #endif

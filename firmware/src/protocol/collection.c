@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-#define NEWS_SHARE 8 /* a path shorter by this part of its hops is worth another relay within a round */
+#define REFUSALS_MAX 3 /* in a row, of a parent */
+#define NEWS_SHARE 8   /* a path shorter by this part of its hops is worth another relay within a round */
 
 static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a : b; }
 
@@ -32,10 +33,10 @@ static void send(const struct mh_collection *c, mh_node_id destination, const st
     c->node->port->send(c->node->context, destination, message);
 }
 
-static void drop(struct mh_collection *c)
+static void drop(struct mh_collection *c, enum mh_loss reason)
 {
-    if (c->dropped < UINT16_MAX) {
-        c->dropped++;
+    if (c->lost[reason] < UINT16_MAX) {
+        c->lost[reason]++;
     }
 }
 
@@ -81,8 +82,10 @@ static bool is_better(const struct mh_collection *c, const mh_beacon_t *beacon)
     if ((mh_node_id)beacon->sink != c->sink) {
         return nearer || c->stale;
     }
+    /* In the same round a path as short as the lost one is welcome too: it cannot lead back here. */
+    const bool instead = c->stale && (mh_node_id)beacon->sender != c->parent && beacon->hops < c->hops;
     const int16_t newer = rounds_newer(c, beacon);
-    return newer == 0 ? nearer : newer > 0 || c->stale;
+    return newer == 0 ? nearer || instead : newer > 0 || c->stale;
 }
 
 /* Where many relay, paths get shorter hop by hop as later beacons come in. Those farther out need not hear of each: they
@@ -103,6 +106,7 @@ static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon
     c->hops = (uint8_t)(beacon->hops + 1);
     c->joined = true;
     c->stale = false;
+    c->refused = 0;
     c->upkeep_time = now + 2 * c->config->beacon_period + spread(c, c->config->beacon_period);
     if (news) {
         wait_to_relay_beacon(c, now);
@@ -111,6 +115,15 @@ static void join(struct mh_collection *c, mh_tick now, const mh_beacon_t *beacon
         c->tracking = !c->tracking;
         c->node->port->tracking(c->node->context, c->tracking);
     }
+}
+
+static void ask_for_a_path(struct mh_collection *c, mh_tick now)
+{
+    c->stale = true;
+    c->refused = 0;
+    c->beacon_waits = false;
+    c->upkeep_time = now + c->config->beacon_period;
+    send_beacon(c, MH_BROADCAST);
 }
 
 /* A sink that has been restarted counts from 1 while its field remembers more. Its neighbours answer with the round they know,
@@ -145,14 +158,37 @@ static void hear_report(struct mh_collection *c, mh_tick now, const mh_report_t 
         c->node->port->deliver(c->node->context, now, &measurement);
         return;
     }
-    if (!c->joined || report->hops >= MH_HOPS_MAX || (mh_node_id)report->origin == c->node->id) {
-        drop(c);
+    if (!c->joined || report->hops >= MH_HOPS_MAX) {
+        drop(c, c->joined ? MH_LOSS_HOPS : MH_LOSS_NO_ROUTE);
+        return;
+    }
+    const bool from_parent = (mh_node_id)report->sender == c->parent;
+    if (from_parent || (mh_node_id)report->origin == c->node->id) {
+        drop(c, MH_LOSS_LOOP);
+        if (from_parent && !c->stale) {
+            ask_for_a_path(c, now);
+        }
         return;
     }
     struct mh_message relayed = {.kind = MH_MESSAGE_REPORT, .as.report = *report};
     relayed.as.report.sender = (int32_t)c->node->id;
     relayed.as.report.hops++;
     send(c, c->parent, &relayed);
+}
+
+/* Broadcasts are not acknowledged, so only the parent can refuse. */
+static void sent(void *state, mh_tick now, enum mh_sent outcome)
+{
+    struct mh_collection *c = state;
+    if (outcome == MH_SENT_OK) {
+        c->refused = 0;
+    } else if (outcome == MH_SENT_NO_ACK) {
+        drop(c, MH_LOSS_NOT_ACKNOWLEDGED);
+        if (++c->refused == REFUSALS_MAX) {
+            ask_for_a_path(c, now);
+            arm(c);
+        }
+    }
 }
 
 /* ---- requests, towards a place ---- */
@@ -304,10 +340,7 @@ static void timer(void *state, mh_tick now)
         if (c->node->is_head) {
             begin_round(c, now);
         } else {
-            c->stale = true;
-            c->beacon_waits = false;
-            c->upkeep_time = now + c->config->beacon_period;
-            send_beacon(c, MH_BROADCAST);
+            ask_for_a_path(c, now);
         }
     }
     arm(c);
@@ -354,6 +387,14 @@ static void tell_tracking(void *state, mh_tick now, bool tracking)
     }
 }
 
+static void count(const void *state, struct mh_protocol_counters *counters)
+{
+    const struct mh_collection *c = state;
+    for (uint8_t reason = 0; reason < MH_LOSSES; reason++) {
+        counters->lost[reason] += c->lost[reason];
+    }
+}
+
 const struct mh_protocol mh_protocol_collection = {
     .name = "collection",
     .state_size = sizeof(struct mh_collection),
@@ -361,10 +402,12 @@ const struct mh_protocol mh_protocol_collection = {
     .init = init,
     .start = start,
     .message = message,
+    .sent = sent,
     .timer = timer,
     .publish = publish,
     .ask = ask,
     .tell_tracking = tell_tracking,
+    .count = count,
 };
 
 void mh_collection_config_default(struct mh_collection_config *config)

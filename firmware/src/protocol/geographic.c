@@ -36,9 +36,10 @@ static bool is_nearer(uint64_t a, mh_node_id a_id, uint64_t b, mh_node_id b_id)
     return a < b || (a == b && a_id < b_id);
 }
 
-/* Of the neighbours that are nearer to the goal than a place at that distance, `id`'s. */
-static const struct mh_neighbour *greedy(const struct mh_neighbours *table, const struct mh_place *goal,
-                                         uint64_t limit_square, mh_node_id id)
+/* The best of the neighbours that are nearer to the goal than a place at that distance, `id`'s. The destination itself is one of
+ * them, wherever it has moved. */
+static const struct mh_neighbour *greedy(const struct mh_neighbours *table, mh_node_id destination,
+                                         const struct mh_place *goal, uint64_t limit_square, mh_node_id id)
 {
     const uint32_t limit = mh_square_root(limit_square);
     const struct mh_neighbour *best = NULL;
@@ -46,12 +47,13 @@ static const struct mh_neighbour *greedy(const struct mh_neighbours *table, cons
     for (uint8_t i = 0; i < table->count; i++) {
         const struct mh_neighbour *n = &table->list[i];
         const struct mh_place place = place_of(n);
-        const uint64_t square = square_of_distance(&place, goal);
-        if (!mh_neighbour_usable(n) || !is_nearer(square, n->id, limit_square, id)) {
+        const uint64_t square = n->id == destination ? 0 : square_of_distance(&place, goal);
+        if (!mh_neighbour_usable(n) || (n->id != destination && !is_nearer(square, n->id, limit_square, id))) {
             continue;
         }
         const uint64_t score = (uint64_t)(limit - mh_square_root(square)) * mh_neighbour_quality(n);
-        if (!best || score > best_score || (score == best_score && is_nearer(square, n->id, best_square, best->id))) {
+        if (!best || score > best_score ||
+            (score == best_score && (n->id == destination || is_nearer(square, n->id, best_square, best->id)))) {
             best = n;
             best_square = square;
             best_score = score;
@@ -169,10 +171,8 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
     const uint64_t entry_square = square_of_distance(&entry, &goal);
     const bool walks = message->envelope == MH_ENVELOPE_FACE && here_square >= entry_square;
     const struct mh_neighbour *towards =
-        route->destination == (int32_t)MH_BROADCAST ? NULL : mh_neighbours_find(table, (mh_node_id)route->destination);
-    if (!towards || !mh_neighbour_usable(towards)) {
-        towards = walks ? greedy(table, &goal, entry_square, 0) : greedy(table, &goal, here_square, table->id);
-    }
+        walks ? greedy(table, (mh_node_id)route->destination, &goal, entry_square, 0)
+              : greedy(table, (mh_node_id)route->destination, &goal, here_square, table->id);
     enum mh_hop hop;
     if (towards) {
         changed.envelope = MH_ENVELOPE_ROUTE;

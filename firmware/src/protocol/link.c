@@ -1,5 +1,7 @@
 #include "motehound/link.h"
 
+#include "motehound/spread.h"
+
 #include <string.h>
 
 #define DOUBLINGS_MAX 6
@@ -13,7 +15,7 @@ static void count(uint16_t *counter)
 
 void mh_link_config_default(struct mh_link_config *config)
 {
-    const struct mh_link_config nominal = {.attempts = 8, .backoff = 4};
+    const struct mh_link_config nominal = {.attempts = 6, .backoff = 20};
     *config = nominal;
 }
 
@@ -39,24 +41,37 @@ void mh_link_broadcast(struct mh_link *link, const struct mh_message *message)
 
 /* ---- what was taken before ---- */
 
-static bool was_seen(const struct mh_link *link, const struct mh_message *message)
+/* MH_OK, MH_ERR_REPEATED or MH_ERR_NO_ROUTE, as in mh_link_take. */
+static enum mh_status compare_with_seen(const struct mh_link *link, const struct mh_message *message)
 {
-    const mh_route_t *route = &message->header.route;
+    const mh_face_t *header = &message->header;
+    const bool walks = message->envelope == MH_ENVELOPE_FACE;
+    enum mh_status found = MH_OK;
     for (uint8_t i = 0; i < link->seen_count; i++) {
-        if (link->seen[i].origin == (mh_node_id)route->origin && link->seen[i].sequence == route->sequence &&
-            (message->envelope == MH_ENVELOPE_ROUTE || link->seen[i].hops == route->hops)) {
-            return true;
+        if (link->seen[i].origin != (mh_node_id)header->route.origin ||
+            link->seen[i].sequence != header->route.sequence) {
+            continue;
+        }
+        if (!walks || link->seen[i].hops == header->route.hops) {
+            return MH_ERR_REPEATED;
+        }
+        if (link->seen[i].sender == (mh_node_id)header->route.sender &&
+            link->seen[i].entry == (mh_node_id)header->entry) {
+            found = MH_ERR_NO_ROUTE;
         }
     }
-    return false;
+    return found;
 }
 
 static void remember(struct mh_link *link, const struct mh_message *message)
 {
-    const mh_route_t *route = &message->header.route;
-    link->seen[link->seen_next].origin = (mh_node_id)route->origin;
-    link->seen[link->seen_next].sequence = route->sequence;
-    link->seen[link->seen_next].hops = route->hops;
+    const mh_face_t *header = &message->header;
+    const bool walks = message->envelope == MH_ENVELOPE_FACE;
+    link->seen[link->seen_next].origin = (mh_node_id)header->route.origin;
+    link->seen[link->seen_next].sender = walks ? (mh_node_id)header->route.sender : MH_BROADCAST;
+    link->seen[link->seen_next].entry = walks ? (mh_node_id)header->entry : MH_BROADCAST;
+    link->seen[link->seen_next].sequence = header->route.sequence;
+    link->seen[link->seen_next].hops = header->route.hops;
     link->seen_next = (uint8_t)((link->seen_next + 1) % MH_LINK_SEEN_MAX);
     if (link->seen_count < MH_LINK_SEEN_MAX) {
         link->seen_count++;
@@ -65,24 +80,26 @@ static void remember(struct mh_link *link, const struct mh_message *message)
 
 enum mh_status mh_link_arrive(struct mh_link *link, const struct mh_message *message)
 {
-    struct mh_message any_hops = *message;
-    any_hops.envelope = MH_ENVELOPE_ROUTE;
-    if (was_seen(link, &any_hops)) {
-        count(&link->lost[MH_LINK_DUPLICATE]);
-        return MH_ERR_REPEATED;
+    struct mh_message by_any_way = *message;
+    by_any_way.envelope = MH_ENVELOPE_ROUTE;
+    const enum mh_status status = compare_with_seen(link, &by_any_way);
+    if (status != MH_OK) {
+        count(&link->lost[MH_LOSS_DUPLICATE]);
+    } else {
+        remember(link, &by_any_way);
     }
-    remember(link, message);
-    return MH_OK;
+    return status;
 }
 
 enum mh_status mh_link_take(struct mh_link *link, const struct mh_message *message)
 {
-    if (was_seen(link, message)) {
-        count(&link->lost[MH_LINK_DUPLICATE]);
-        return MH_ERR_REPEATED;
+    const enum mh_status status = compare_with_seen(link, message);
+    if (status != MH_OK) {
+        count(&link->lost[status == MH_ERR_REPEATED ? MH_LOSS_DUPLICATE : MH_LOSS_LOOP]);
+        return status;
     }
     if (link->count == MH_LINK_QUEUE_MAX) {
-        count(&link->lost[MH_LINK_QUEUE_FULL]);
+        count(&link->lost[MH_LOSS_QUEUE_FULL]);
         return MH_ERR_CAPACITY;
     }
     remember(link, message);
@@ -117,7 +134,7 @@ void mh_link_finish(struct mh_link *link)
     link->count--;
 }
 
-void mh_link_drop(struct mh_link *link, enum mh_link_loss reason)
+void mh_link_drop(struct mh_link *link, enum mh_loss reason)
 {
     count(&link->lost[reason]);
     mh_link_finish(link);
@@ -128,9 +145,7 @@ static mh_tick backoff(const struct mh_link *link, uint8_t attempts)
 {
     const uint8_t doublings = attempts - 1 < DOUBLINGS_MAX ? (uint8_t)(attempts - 1) : DOUBLINGS_MAX;
     const mh_tick longest = link->config->backoff << doublings;
-    uint32_t hash = (link->node->id ^ link->retries * UINT32_C(0x9E3779B1)) * UINT32_C(0x85EBCA6B);
-    hash ^= hash >> 15;
-    return longest - (mh_tick)((uint64_t)hash * (longest / 2 + 1) >> 32);
+    return longest - mh_spread(link->node->id, link->retries, longest / 2 + 1);
 }
 
 enum mh_link_outcome mh_link_sent(struct mh_link *link, mh_tick now, enum mh_sent outcome)
@@ -149,7 +164,7 @@ enum mh_link_outcome mh_link_sent(struct mh_link *link, mh_tick now, enum mh_sen
     struct mh_link_message *first = &link->queue[link->first];
     first->attempts++;
     if (first->attempts == link->config->attempts) {
-        mh_link_drop(link, MH_LINK_NOT_ACKNOWLEDGED);
+        mh_link_drop(link, MH_LOSS_NOT_ACKNOWLEDGED);
     } else {
         count(&link->retries);
         link->waits = true;
@@ -164,4 +179,12 @@ bool mh_link_alarm(const struct mh_link *link, mh_tick *time)
         *time = link->retry_time;
     }
     return link->waits;
+}
+
+void mh_link_count(const struct mh_link *link, struct mh_protocol_counters *counters)
+{
+    for (uint8_t reason = 0; reason < MH_LOSSES; reason++) {
+        counters->lost[reason] += link->lost[reason];
+    }
+    counters->retries += link->retries;
 }

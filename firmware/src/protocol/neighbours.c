@@ -4,7 +4,7 @@
 
 #define COARSE_BITS 8    /* an entry's times are ticks without their last eight bits */
 #define SHARE_MAX 255    /* 100 % */
-#define SHARE_NEW 128    /* of a neighbour's hellos, before a second one has come */
+#define SHARE_NEW 192    /* of a neighbour's hellos, before a second one has come */
 #define SHARE_USABLE 64  /* a quarter */
 #define MISSED_MAX 16    /* a greater gap between the numbers of two hellos means that the sender has been restarted */
 #define NOBODY UINT8_MAX /* index of no entry */
@@ -148,7 +148,7 @@ static uint8_t worst_unused(const struct mh_neighbours *table)
     uint8_t worst = NOBODY;
     for (uint8_t i = 0; i < table->count; i++) {
         const struct mh_neighbour *n = &table->list[i];
-        if (!mh_neighbour_usable(n) &&
+        if (!mh_neighbour_usable(n) && n->id != table->kept &&
             (worst == NOBODY || mh_neighbour_quality(n) < mh_neighbour_quality(&table->list[worst]))) {
             worst = i;
         }
@@ -156,13 +156,18 @@ static uint8_t worst_unused(const struct mh_neighbours *table)
     return worst;
 }
 
-/* Among the entries with a witness and the newcomer if it has one. Returns NOBODY if nobody has; the table's count for the newcomer. */
+static bool may_give_way(const struct mh_neighbours *table, const struct mh_neighbour *n)
+{
+    return n->edge == MH_EDGE_WITNESSED && n->id != table->kept;
+}
+
+/* Among the entries with a witness, and the newcomer if it has one. Returns NOBODY if nobody has; the table's count for the newcomer. */
 static uint8_t least_reach_of_fullest_octant(const struct mh_neighbours *table, const struct mh_neighbour *newcomer)
 {
     uint8_t in_octant[OCTANTS] = {0};
     for (uint8_t i = 0; i <= table->count; i++) {
         const struct mh_neighbour *n = i < table->count ? &table->list[i] : newcomer;
-        in_octant[octant(table, n)] = (uint8_t)(in_octant[octant(table, n)] + (n->edge == MH_EDGE_WITNESSED));
+        in_octant[octant(table, n)] = (uint8_t)(in_octant[octant(table, n)] + may_give_way(table, n));
     }
     uint8_t fullest = 0;
     for (uint8_t i = 1; i < OCTANTS; i++) {
@@ -172,7 +177,7 @@ static uint8_t least_reach_of_fullest_octant(const struct mh_neighbours *table, 
     uint64_t least_reach = UINT64_MAX;
     for (uint8_t i = 0; i <= table->count; i++) {
         const struct mh_neighbour *n = i < table->count ? &table->list[i] : newcomer;
-        if (n->edge == MH_EDGE_WITNESSED && octant(table, n) == fullest && reach(table, n) <= least_reach) {
+        if (may_give_way(table, n) && octant(table, n) == fullest && reach(table, n) <= least_reach) {
             least = i;
             least_reach = reach(table, n);
         }
@@ -219,9 +224,12 @@ enum mh_status mh_neighbours_init(struct mh_neighbours *table, mh_node_id id, co
     table->id = id;
     table->place = *place;
     table->capacity = capacity;
+    table->kept = MH_BROADCAST;
     table->lifetime = coarse(lifetime);
     return MH_OK;
 }
+
+void mh_neighbours_keep(struct mh_neighbours *table, mh_node_id id) { table->kept = id; }
 
 const struct mh_neighbour *mh_neighbours_find(const struct mh_neighbours *table, mh_node_id id)
 {

@@ -246,7 +246,7 @@ static void reports_go_up_and_never_in_circles(void)
     TEST_ASSERT_EQUAL(MH_ERR_NO_ROUTE, collection->publish(&state, 100, &own));
     collection->message(&state, 100, &report);
     TEST_ASSERT_EQUAL(0, saw.sent);
-    TEST_ASSERT_EQUAL_UINT16(1, state.dropped);
+    TEST_ASSERT_EQUAL_UINT16(1, state.lost[MH_LOSS_NO_ROUTE]);
     hear_beacon(5, 1, 7, 3);
     TEST_ASSERT_EQUAL(MH_OK, collection->publish(&state, 100, &own));
     TEST_ASSERT_EQUAL_UINT32(5, saw.destination);
@@ -263,7 +263,55 @@ static void reports_go_up_and_never_in_circles(void)
     report.as.report.origin = 10; /* its own, come back */
     collection->message(&state, 100, &report);
     TEST_ASSERT_EQUAL(2, saw.sent);
-    TEST_ASSERT_EQUAL_UINT16(3, state.dropped);
+    TEST_ASSERT_EQUAL_UINT16(1, state.lost[MH_LOSS_HOPS]);
+    TEST_ASSERT_EQUAL_UINT16(1, state.lost[MH_LOSS_LOOP]);
+    struct mh_protocol_counters counters = {.retries = 0};
+    collection->count(&state, &counters);
+    TEST_ASSERT_EQUAL_UINT32(1, counters.lost[MH_LOSS_NO_ROUTE]);
+    TEST_ASSERT_EQUAL_UINT32(1, counters.lost[MH_LOSS_LOOP]);
+}
+
+/* Three in a row that were not acknowledged: any path as short as the parent's is taken instead, but not the parent's own. */
+static void a_parent_that_is_gone_is_replaced(void)
+{
+    hear_beacon(5, 1, 7, 3);
+    collection->timer(&state, saw.timer);
+    const unsigned before = saw.sent;
+    collection->sent(&state, 200, MH_SENT_NO_ACK);
+    collection->sent(&state, 200, MH_SENT_NO_ACK);
+    collection->sent(&state, 200, MH_SENT_OK);
+    collection->sent(&state, 200, MH_SENT_NO_ACK);
+    collection->sent(&state, 200, MH_SENT_BUSY); /* not the parent's fault */
+    collection->sent(&state, 200, MH_SENT_NO_ACK);
+    TEST_ASSERT_EQUAL(before, saw.sent);
+    TEST_ASSERT_FALSE(state.stale);
+    collection->sent(&state, 200, MH_SENT_NO_ACK);
+    TEST_ASSERT_EQUAL(before + 1, saw.sent);
+    TEST_ASSERT_EQUAL_UINT32(MH_BROADCAST, saw.destination);
+    TEST_ASSERT_EQUAL_INT32(-1, saw.message.as.beacon.sink);
+    TEST_ASSERT_EQUAL_UINT16(5, state.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
+    hear_beacon(5, 1, 7, 3);
+    TEST_ASSERT_TRUE(state.stale);
+    hear_beacon(6, 1, 7, 4); /* could be its own child's */
+    TEST_ASSERT_TRUE(state.stale);
+    hear_beacon(7, 1, 7, 3);
+    TEST_ASSERT_FALSE(state.stale);
+    TEST_ASSERT_EQUAL_UINT32(7, state.parent);
+    TEST_ASSERT_EQUAL_UINT8(4, state.hops);
+}
+
+static void two_nodes_that_take_each_other_for_parents_notice(void)
+{
+    hear_beacon(5, 1, 7, 3);
+    collection->timer(&state, saw.timer);
+    const unsigned before = saw.sent;
+    const struct mh_message report = {.kind = MH_MESSAGE_REPORT, .as.report = {.sender = 5, .origin = 31, .hops = 2}};
+    collection->message(&state, 300, &report);
+    collection->message(&state, 300, &report);
+    TEST_ASSERT_EQUAL_UINT16(2, state.lost[MH_LOSS_LOOP]);
+    TEST_ASSERT_EQUAL(before + 1, saw.sent); /* asks once */
+    TEST_ASSERT_EQUAL_UINT32(MH_BROADCAST, saw.destination);
+    TEST_ASSERT_TRUE(state.stale);
 }
 
 static void a_request_is_relayed_once_and_only_where_it_helps(void)
@@ -352,6 +400,8 @@ int main(void)
     RUN_TEST(a_path_hardly_shorter_is_taken_and_not_relayed_again);
     RUN_TEST(a_node_without_a_path_asks_and_is_answered);
     RUN_TEST(reports_go_up_and_never_in_circles);
+    RUN_TEST(a_parent_that_is_gone_is_replaced);
+    RUN_TEST(two_nodes_that_take_each_other_for_parents_notice);
     RUN_TEST(a_request_is_relayed_once_and_only_where_it_helps);
     RUN_TEST(the_broadcast_that_covers_the_place_is_the_last);
     RUN_TEST(requests_of_several_heads_are_told_apart);

@@ -135,7 +135,7 @@ static void waits_double_and_attempts_end(void)
             TEST_ASSERT_FALSE(mh_link_alarm(&link, &due));
         }
     }
-    TEST_ASSERT_EQUAL(1, link.lost[MH_LINK_NOT_ACKNOWLEDGED]);
+    TEST_ASSERT_EQUAL(1, link.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
     TEST_ASSERT_EQUAL(config.attempts - 1, link.retries);
     pump(now);
     TEST_ASSERT_EQUAL(2, saw.sequence); /* the next one begins afresh */
@@ -148,7 +148,7 @@ static void an_overflow_is_counted_and_may_come_again(void)
         TEST_ASSERT_EQUAL(MH_OK, take(i));
     }
     TEST_ASSERT_EQUAL(MH_ERR_CAPACITY, take(MH_LINK_QUEUE_MAX));
-    TEST_ASSERT_EQUAL(1, link.lost[MH_LINK_QUEUE_FULL]);
+    TEST_ASSERT_EQUAL(1, link.lost[MH_LOSS_QUEUE_FULL]);
     pump(0);
     mh_link_sent(&link, 0, MH_SENT_OK);
     TEST_ASSERT_EQUAL(MH_OK, take(MH_LINK_QUEUE_MAX)); /* it was not taken for a duplicate */
@@ -173,8 +173,27 @@ static void what_was_taken_is_not_taken_again(void)
     TEST_ASSERT_EQUAL(MH_ERR_REPEATED, mh_link_take(&link, &message));
     message.header.route.origin++;
     TEST_ASSERT_EQUAL(MH_OK, mh_link_take(&link, &message));
-    TEST_ASSERT_EQUAL(3, link.lost[MH_LINK_DUPLICATE]);
+    TEST_ASSERT_EQUAL(3, link.lost[MH_LOSS_DUPLICATE]);
     TEST_ASSERT_EQUAL(3, link.count);
+}
+
+/* Once more by the same edge of the same walk: a circle. By another edge, or in another walk, it is on its way. */
+static void a_walk_in_a_circle_is_given_up(void)
+{
+    struct mh_message message = numbered(5);
+    message.envelope = MH_ENVELOPE_FACE;
+    message.header.route.sender = 8;
+    message.header.entry = 9;
+    TEST_ASSERT_EQUAL(MH_OK, mh_link_take(&link, &message));
+    message.header.route.hops = 4;
+    TEST_ASSERT_EQUAL(MH_ERR_NO_ROUTE, mh_link_take(&link, &message));
+    TEST_ASSERT_EQUAL(1, link.lost[MH_LOSS_LOOP]);
+    message.header.entry = 7;
+    TEST_ASSERT_EQUAL(MH_OK, mh_link_take(&link, &message));
+    message.header.entry = 9;
+    message.header.route.sender = 6;
+    message.header.route.hops = 5;
+    TEST_ASSERT_EQUAL(MH_OK, mh_link_take(&link, &message));
 }
 
 static void at_its_end_a_message_is_taken_once_by_whatever_way_it_comes(void)
@@ -198,11 +217,11 @@ static void what_is_dropped_is_counted_by_reason(void)
     take(1);
     take(2);
     TEST_ASSERT_NOT_NULL(mh_link_due(&link, 0));
-    mh_link_drop(&link, MH_LINK_UNREACHABLE);
+    mh_link_drop(&link, MH_LOSS_LOOP);
     TEST_ASSERT_EQUAL(2, mh_link_due(&link, 0)->header.route.sequence);
     mh_link_finish(&link);
     TEST_ASSERT_NULL(mh_link_due(&link, 0));
-    TEST_ASSERT_EQUAL(1, link.lost[MH_LINK_UNREACHABLE]);
+    TEST_ASSERT_EQUAL(1, link.lost[MH_LOSS_LOOP]);
     TEST_ASSERT_EQUAL(0, saw.sent);
 }
 
@@ -215,6 +234,7 @@ int main(void)
     RUN_TEST(waits_double_and_attempts_end);
     RUN_TEST(an_overflow_is_counted_and_may_come_again);
     RUN_TEST(what_was_taken_is_not_taken_again);
+    RUN_TEST(a_walk_in_a_circle_is_given_up);
     RUN_TEST(at_its_end_a_message_is_taken_once_by_whatever_way_it_comes);
     RUN_TEST(what_is_dropped_is_counted_by_reason);
     port_exit(UNITY_END() > 0);

@@ -176,6 +176,48 @@ static void read(mh_tick time, int32_t counts, enum mh_status expected)
     TEST_ASSERT_EQUAL(expected, mh_mote_reading(&mote, time, &reading));
 }
 
+static struct {
+    unsigned fates;
+    enum mh_sent last;
+    mh_tick time;
+} protocol_saw;
+
+/* A protocol that sends again in 7 ticks what was not acknowledged. */
+static void protocol_sent(void *state, mh_tick now, enum mh_sent outcome)
+{
+    struct mh_direct *d = state;
+    protocol_saw.fates++;
+    protocol_saw.last = outcome;
+    protocol_saw.time = now;
+    if (outcome == MH_SENT_NO_ACK) {
+        d->node->port->set_timer(d->node->context, now + 7);
+    }
+}
+
+static void the_fate_of_a_frame_goes_to_the_protocol(void)
+{
+    struct mh_protocol retrying = mh_protocol_direct;
+    retrying.sent = protocol_sent;
+    config.protocol = &retrying;
+    memset(&protocol_saw, 0, sizeof protocol_saw);
+    come_up(0);
+    receive_beacon(10, false);
+    read(T, 500, MH_OK);
+    read(2 * T, 800, MH_OK);
+    const unsigned alarms = port_saw.alarms;
+    mh_mote_sent(&mote, 2 * T + 3, MH_SENT_OK);
+    TEST_ASSERT_EQUAL(1, protocol_saw.fates);
+    TEST_ASSERT_EQUAL(MH_SENT_OK, protocol_saw.last);
+    TEST_ASSERT_EQUAL_UINT32(2 * T + 3, protocol_saw.time);
+    TEST_ASSERT_EQUAL(alarms, port_saw.alarms);
+    mh_mote_sent(&mote, 2 * T + 5, MH_SENT_NO_ACK);
+    TEST_ASSERT_EQUAL(MH_SENT_NO_ACK, protocol_saw.last);
+    TEST_ASSERT_EQUAL_UINT32(2 * T + 12, port_saw.alarm);
+    config.protocol = &mh_protocol_direct; /* which does not care */
+    mh_mote_sent(&mote, 2 * T + 6, MH_SENT_BUSY);
+    TEST_ASSERT_EQUAL(2, protocol_saw.fates);
+}
+
 static void bad_configurations_are_refused(void)
 {
     const struct mh_mote_config good = config;
@@ -409,6 +451,7 @@ int main(void)
     RUN_TEST(a_head_asks_for_the_next_instant);
     RUN_TEST(a_late_alarm_is_made_up_for);
     RUN_TEST(a_node_sleeps_between_beacons);
+    RUN_TEST(the_fate_of_a_frame_goes_to_the_protocol);
     port_exit(UNITY_END() > 0);
     return 0;
 }
