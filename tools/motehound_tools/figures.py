@@ -343,16 +343,7 @@ CAUSES = {
     "time": ("keeping clocks together", "#e69f00"),
     "idle": ("waiting and sleeping", "#d5dae0"),
 }
-LOST_AT_RECEIVER = {
-    "collision": "because of interference",
-    "random": "by the channel's own loss process",
-    "deaf": "because the receiver was sending",
-    "asleep": "because the receiver was asleep",
-    "dead": "because the receiver was dead, or the sender died",
-    "jammed": "in a jammed zone",
-    "partition": "by a partition of the network",
-    "range": "because the addressee was out of range",
-}
+# Frames lost for any other reason are lost by a receiver.
 LOST_AT_SENDER = {
     "busy": "frames given up because the channel was never free",
     "no_ack": "frames given up for want of an acknowledgement",
@@ -401,8 +392,8 @@ def energy_picture(output: Output) -> Picture | None:
 
 def losses_picture(output: Output) -> Picture | None:
     """Frames lost, by reason, where the ones at a receiver count receptions and the others frames."""
-    reasons = [*LOST_AT_RECEIVER, *LOST_AT_SENDER]
-    lost = {reason: output.statistic(f"frames_lost_{reason}") for reason in reasons}
+    columns = [name for name in output.summary["metrics"] if name.startswith("frames_lost_")]
+    lost = {name.removeprefix("frames_lost_"): output.statistic(name) for name in columns}
     known = {reason: count for reason, count in lost.items() if count > 0.0}
     if not known:
         return None

@@ -35,7 +35,6 @@ MEANING = {
     "frames_sent_syncs": "of these synchronisations of the clocks",
     "frames_repeated": "of the frames sent those sent again for want of an acknowledgement",
     "frames_lost": "receptions that failed",
-    **{f"frames_lost_{reason}": f"of these {said}" for reason, said in figures.LOST_AT_RECEIVER.items()},
     **{f"frames_lost_{reason}": said for reason, said in figures.LOST_AT_SENDER.items()},
     "readings": "samples taken by all motes",
     "readings_refused": "samples out of range or out of time",
@@ -98,7 +97,8 @@ def statistics(results: Output) -> list[dict[str, str]]:
     for name, entry in results.summary["metrics"].items():
         row = {key: number(entry[key]) for key in output.STATISTICS}
         pooled = results.summary.get("pooled", {}).get(name)
-        rows.append({"name": name, "meaning": MEANING.get(name, ""), "pooled": number(pooled), **row})
+        of_these = f"of these by reason `{name.removeprefix('frames_lost_')}`" if name.startswith("frames_lost_") else ""
+        rows.append({"name": name, "meaning": MEANING.get(name, of_these), "pooled": number(pooled), **row})
     return rows
 
 
