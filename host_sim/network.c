@@ -249,7 +249,7 @@ static int tell_motes(struct network *network)
     const struct network_config *config = &network->config;
     const bool accounted = network->account.open;
     const struct energy *ledger = &network->account.ledger;
-    for (uint32_t i = 0; i < config->roster->count; i++) {
+    for (uint32_t i = 0; i < config->roster->count && config->observer->mote; i++) {
         const struct mote_state told = {.energy_mj =
                                             accounted ? 1e3 * energy_used_j(ledger, i, network->now) : (double)NAN,
                                         .battery_left = accounted ? energy_battery_left(ledger, i, network->now) : 1,
@@ -387,9 +387,8 @@ static int schedule_motes(struct network *network)
             return -1;
         }
     }
-    return network->config.observer->mote
-               ? event_queue_push(&network->instants, network->mote_interval, INSTANT_OF_MOTES)
-               : 0;
+    /* whether anyone listens or not, so that windows begin and end alike */
+    return event_queue_push(&network->instants, network->mote_interval, INSTANT_OF_MOTES);
 }
 
 int network_make(struct network *network, const struct network_config *config, char *error, size_t error_size)

@@ -28,6 +28,16 @@ for workers in 1 3; do
     same small small$workers
 done
 
+# collisions, drifting clocks that are synchronised, batteries that empty, motes that die and restart; and a log, which looks on
+rough=(--set radio.profile=802154 --set clock.drift_ppm=40 --set clock.sync=flooding --set energy.battery_j=1 --set faults.dead_share=0.1 --set faults.dead_from_s=5
+    --set faults.reboot_share=0.2 --set faults.reboot_from_s=8 --set faults.stuck_share=0.1)
+accepted "${small[@]}" "${rough[@]}" --out rough --log
+accepted "${small[@]}" "${rough[@]}" --out rough2 --bus "$bus" --workers 2
+same rough rough2
+accepted "$MOTEHOUND" run bench_s2 --set source.duration_s=15 --out s2
+accepted "$MOTEHOUND" run bench_s2 --set source.duration_s=15 --out s22 --bus "$bus" --workers 2
+same s2 s22
+
 # a worker from elsewhere joins; it ends when the run does
 "$MOTEHOUND" worker --bus "$bus" 2>joined.txt & joined=$!
 accepted "${small[@]}" --out alone
