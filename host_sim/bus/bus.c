@@ -23,6 +23,24 @@
 /* A simulation is a thousand times faster than what it simulates; UDP's buffers hold some hundred messages. */
 #define OUTSIDE_PAUSE_NS 50000
 
+/* Let the machine's clock come to where simulated time is, at the bus's pace. A signal ends the wait: a run that is to stop
+ * shall not sleep on. */
+static void keep_pace(struct bus *bus, double time_s)
+{
+    struct timespec clock;
+    clock_gettime(CLOCK_MONOTONIC, &clock);
+    const double now_s = (double)clock.tv_sec + 1e-9 * (double)clock.tv_nsec, ahead_s = time_s / bus->pace;
+    if (bus->began_s <= 0) {
+        bus->began_s = now_s - ahead_s;
+    }
+    const double left_s = bus->began_s + ahead_s - now_s;
+    if (left_s > 0) {
+        const double whole_s = floor(left_s);
+        const struct timespec wait = {(time_t)whole_s, (long)((left_s - whole_s) * 1e9)};
+        nanosleep(&wait, NULL);
+    }
+}
+
 static void publish(struct bus *bus, const char *channel, double time_s, void *bytes, int length)
 {
     bus->time_s = time_s;
@@ -41,6 +59,9 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
     if (bus->outside != NULL) {
         /* a network that drops messages is no failure of the run, but listeners shall have time to take them */
         const struct timespec pause = {.tv_nsec = OUTSIDE_PAUSE_NS};
+        if (bus->pace > 0) {
+            keep_pace(bus, time_s);
+        }
         lcm_publish(bus->outside, channel, bytes, (unsigned)length);
         nanosleep(&pause, NULL);
     }
@@ -74,9 +95,10 @@ void bus_prepare(void)
     __motehound_truth_t_get_hash();
 }
 
-int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, char *error, size_t error_size)
+int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, double pace, char *error,
+             size_t error_size)
 {
-    *bus = (struct bus){.lcm = lcm_create("memq://"), .outside = outside, .run = run};
+    *bus = (struct bus){.lcm = lcm_create("memq://"), .outside = outside, .run = run, .pace = pace};
     if (bus->lcm == NULL) {
         return fail(error, error_size, "memq://: cannot create an LCM");
     }

@@ -26,15 +26,18 @@ struct bus {
     lcm_t *outside;      /* NULL or shared by all runs: LCM's publishing is thread-safe */
     lcm_eventlog_t *log; /* NULL or a standard LCM log, its timestamps the simulated time in microseconds */
     int32_t run;
-    double time_s; /* of the last message */
-    bool failed;   /* a message could not be made, delivered or logged */
+    double pace;    /* simulated seconds a second of what goes outside; 0: as fast as it is simulated */
+    double began_s; /* by the machine's clock, what was simulated time 0 at that pace */
+    double time_s;  /* of the last message */
+    bool failed;    /* a message could not be made, delivered or logged */
 };
 
 /* Call once before there are threads: lcm-gen's code computes the fingerprint of a type at its first use, unguarded. */
 void bus_prepare(void);
 
-/* `log_path` and `outside` may be NULL. Returns 0, or -1 with one line in `error`. */
-int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, char *error, size_t error_size);
+/* `log_path` and `outside` may be NULL; `pace` concerns `outside`. Returns 0, or -1 with one line in `error`. */
+int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, double pace, char *error,
+             size_t error_size);
 
 /* The observer that publishes on this bus. `bus` outlives it. */
 struct observer bus_observer(struct bus *bus);

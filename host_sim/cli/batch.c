@@ -35,7 +35,7 @@ static bool execute(const struct work *work, unsigned run, struct slot *slot)
     struct bus bus;
     struct simulation_counters counters = {0};
     const uint64_t seed = batch->seed + run;
-    if (bus_open(&bus, (int32_t)run, results_log_path(work->results, run, path), batch->outside, slot->error,
+    if (bus_open(&bus, (int32_t)run, results_log_path(work->results, run, path), batch->outside, batch->pace, slot->error,
                  ERROR_SIZE) != 0) {
         return false;
     }

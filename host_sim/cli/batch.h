@@ -14,6 +14,7 @@ struct batch {
     unsigned runs, jobs;
     const struct host_provider *hosts; /* of simulated runs; NULL: the motes live in this process; else `jobs` is 1 */
     lcm_t *outside;                    /* see bus.h; may be NULL */
+    double pace;                       /* of what goes outside, see bus.h */
     const char *version;
     const volatile sig_atomic_t *stop;
     /* Called from the calling thread when a run's results are in, and some times a second. May be NULL. */

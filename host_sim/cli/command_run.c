@@ -11,7 +11,7 @@
 static const char help[] =
     "motehound run SCENARIO [--set key=value]... [--runs N] [--seed S] [--jobs J] [--out DIR] [--bus URL] [--log] "
     "[--sweep]\n"
-    "              [--workers N] [--join N] [--respawn]\n"
+    "              [--pace X] [--workers N] [--join N] [--respawn]\n"
     "\n"
     "Simulates a network of motes. SCENARIO is a YAML file or a name of `motehound list`.\n"
     "  --set key=value  change any key of the scenario (`motehound list --keys`); may be repeated\n"
@@ -21,6 +21,8 @@ static const char help[] =
     "  --out DIR        folder for the results; default out/NAME\n"
     "  --bus URL        publish everything on this LCM bus too, such as udpm://239.255.76.67:7667?ttl=0;\n"
     "                   default memq://, which stays within the process\n"
+    "  --pace X         with --bus: X seconds of the run a second, to look on (docs/view.md); default as fast as can "
+    "be\n"
     "  --log            also write events.lcm, all that went over the bus, for lcm-logplayer\n"
     "  --sweep          do all runs for each value of the scenario's `sweep`, into DIR/VALUE\n"
     "  --workers N      let the motes live in N other processes of this machine, over --bus URL\n"
@@ -36,11 +38,11 @@ static const char help[] =
 struct run_options {
     const char *scenario, *out, *bus_url;
     uint64_t runs, seed, jobs, workers, joining;
-    double drop_share;
+    double drop_share, pace;
     bool log, sweep, respawn, help;
 };
 
-enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, WORKERS, JOIN, RESPAWN, DROP_SHARE, HELP, RULES };
+enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, PACE, WORKERS, JOIN, RESPAWN, DROP_SHARE, HELP, RULES };
 
 static const struct option_rule rules[RULES] = {
     [SET] = {"--set", true, true},           [RUNS] = {"--runs", true, false},
@@ -49,8 +51,16 @@ static const struct option_rule rules[RULES] = {
     [LOG] = {"--log", false, false},         [SWEEP] = {"--sweep", false, false},
     [WORKERS] = {"--workers", true, false},  [JOIN] = {"--join", true, false},
     [RESPAWN] = {"--respawn", false, false}, [DROP_SHARE] = {"--drop-share", true, false},
-    [HELP] = {"--help", false, false},
+    [PACE] = {"--pace", true, false},        [HELP] = {"--help", false, false},
 };
+
+static int option_pace(const char *value, double *pace, char *error)
+{
+    if (!text_number(value, strlen(value), pace) || *pace < 1e-3 || *pace > 1e6) {
+        return fail(error, COMMAND_ERROR_SIZE, "--pace: expected a number 0.001 to 1000000, found '%.60s'", value);
+    }
+    return 0;
+}
 
 /* All options but --set, whose values wait until the file has been read. */
 static int read_options(struct command *command, struct run_options *options)
@@ -96,6 +106,9 @@ static int read_options(struct command *command, struct run_options *options)
         case SWEEP:
             options->sweep = true;
             break;
+        case PACE:
+            status = option_pace(value, &options->pace, error);
+            break;
         case WORKERS:
             status = option_count("--workers", value, 1, 64, &options->workers, error, COMMAND_ERROR_SIZE);
             break;
@@ -121,6 +134,9 @@ static int read_options(struct command *command, struct run_options *options)
     if (options->scenario == NULL && !options->help) {
         return fail(error, COMMAND_ERROR_SIZE,
                     "motehound run: expected a scenario, found nothing; see motehound run --help");
+    }
+    if (options->pace > 0 && strncmp(options->bus_url, "memq:", 5) == 0) {
+        return fail(error, COMMAND_ERROR_SIZE, "--pace: expected --bus URL too, found none that anyone could look on");
     }
     if (options->workers + options->joining > 0 && options->jobs > 1) {
         return fail(error, COMMAND_ERROR_SIZE, "--workers: expected one run at a time, found --jobs %llu",
@@ -221,6 +237,7 @@ int command_run(struct command *command)
                   .seed = options.seed,
                   .runs = (unsigned)options.runs,
                   .jobs = (unsigned)options.jobs,
+                  .pace = options.pace,
                   .version = MOTEHOUND_VERSION,
                   .stop = command->stop},
         .out = options.out != NULL ? options.out : command_folder("out", scenario.name, out),

@@ -181,4 +181,6 @@ for signal in INT TERM HUP; do
     [ "$(cat err.txt)" = "motehound: interrupted, nothing was written to stopped" ] || complain "after SIG$signal: $(cat err.txt)"
     nothing stopped
 done
+refused '^--pace: expected a number' "$MOTEHOUND" run luo_exp1 --pace 0
+refused '^--pace: expected --bus' "$MOTEHOUND" run luo_exp1 --pace 1
 conclude

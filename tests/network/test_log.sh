@@ -51,4 +51,11 @@ beside_logger "${run[*]} --bus udpm://239.255.76.67:7667?ttl=0 --out outside >/d
 "$COUNT_LOG" bus.lcm >bus.txt || complain "lcm-logger's log of --bus"
 [ "$(of TRACK bus.txt)" -ge 1 ] && [ "$(of FRAME bus.txt)" -ge 1 ] || complain "--bus udpm://: $(cat bus.txt)"
 diff -q outside/summary.json logged/summary.json >/dev/null || complain "a bus outside changes the results"
+
+# at a pace of 8, 24 s of simulated time take 3 s on the clock, whatever else the machine does
+begin=$(date +%s%N)
+own_network sh -c 'ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec "$@"' sh "${run[@]}" --pace 8 \
+    --bus 'udpm://239.255.76.67:7667?ttl=0' --out paced >/dev/null || complain "--pace 8"
+[ $((($(date +%s%N) - begin) / 1000000)) -ge 2900 ] || complain "--pace 8 did not keep pace"
+diff -q paced/summary.json logged/summary.json >/dev/null || complain "a pace changes the results"
 conclude

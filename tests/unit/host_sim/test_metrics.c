@@ -84,7 +84,7 @@ static void run_of(int instants, void (*run)(const struct observer *observer, in
                    .lifetime_half_s = 77,
                    .dead = 4},
         .clock_error_p99_ms = 0.75};
-    TEST_ASSERT_EQUAL_INT(0, bus_open(&bus, 0, NULL, NULL, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, bus_open(&bus, 0, NULL, NULL, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, recorder_subscribe(&recorder, bus.lcm));
     const struct observer observer = bus_observer(&bus);
     bus_begin(&bus, 5, "a scenario", "1.2.3");
