@@ -26,15 +26,15 @@ struct head_memory {
 
 struct in_process;
 
-/* What most events touch lies together, from the beginning to the mote's counters. */
+/* What a frame touches lies together, from the beginning to the mote's counters of frames. */
 struct slot {
-    struct in_process *host;
+    struct local_clock clock;
     uint32_t index;
     bool up;
-    sim_time alarm, alarm_queued; /* when the mote wants it, and when the queue will remember it */
     struct mh_mote_config config;
-    struct local_clock clock;
     struct mh_mote mote;
+    sim_time alarm, alarm_queued; /* when the mote wants it, and when the queue will remember it */
+    struct in_process *host;
     struct head_memory *head;       /* NULL on a mote that does not compute */
     struct mh_clock *network_clock; /* NULL on a mote that keeps no network time; the host's to free */
     union any protocol_state[];
@@ -199,7 +199,7 @@ static void answer_probe(struct slot *slot)
 /* Call for the slot's memory, so that it comes all at once and while others are at work: most time goes by waiting for it. */
 static void prefetch(const struct slot *slot)
 {
-    for (size_t at = 0; at < offsetof(struct slot, mote.node); at += CACHE_LINE) {
+    for (size_t at = 0; at < offsetof(struct slot, mote.counters.readings); at += CACHE_LINE) {
         __builtin_prefetch((const char *)slot + at, 1);
     }
     __builtin_prefetch(slot->protocol_state, 1);
@@ -207,17 +207,22 @@ static void prefetch(const struct slot *slot)
 
 static void hear(struct in_process *host, const struct host_event *event)
 {
-    const uint32_t *receivers = event->as.frame.receivers;
-    for (uint32_t i = 0; i < event->as.frame.count; i++) {
-        if (i + PREFETCH_AHEAD < event->as.frame.count) {
-            prefetch(slot_of(host, receivers[i + PREFETCH_AHEAD]));
+    const uint32_t count = event->as.frame.count, *receivers = event->as.frame.receivers;
+    for (uint32_t i = 0; i < count; i++) {
+        __builtin_prefetch(&host->order[receivers[i]]);
+    }
+    for (uint32_t i = 0; i < count + PREFETCH_AHEAD; i++) {
+        if (i < count) {
+            prefetch(slot_of(host, receivers[i]));
         }
-        struct slot *slot = slot_of(host, receivers[i]);
-        if (slot->up) {
-            (void)mh_mote_frame(&slot->mote, tick_now(slot), event->as.frame.bytes, event->as.frame.length);
+        if (i >= PREFETCH_AHEAD) {
+            struct slot *slot = slot_of(host, receivers[i - PREFETCH_AHEAD]);
+            if (slot->up) {
+                (void)mh_mote_frame(&slot->mote, tick_now(slot), event->as.frame.bytes, event->as.frame.length);
+            }
         }
     }
-    host->past.events += event->as.frame.count;
+    host->past.events += count;
 }
 
 static void happen(struct in_process *host, const struct host_event *event)
@@ -383,16 +388,16 @@ int host_in_process(struct host *host, uint32_t mote_count, const uint32_t *orde
     if (!state) {
         return -1;
     }
-    const size_t units = (protocol->state_size + sizeof(union any) - 1) / sizeof(union any);
     state->count = mote_count;
     state->order = order;
     state->protocol_size = protocol->state_size;
-    state->slot_size = sizeof(struct slot) + units * sizeof(union any);
-    state->slots = calloc(mote_count, state->slot_size);
-    if (!state->slots) {
+    state->slot_size = (sizeof(struct slot) + protocol->state_size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    void *slots;
+    if (posix_memalign(&slots, CACHE_LINE, mote_count * state->slot_size)) {
         free(state);
         return -1;
     }
+    state->slots = memset(slots, 0, mote_count * state->slot_size);
     *host = (struct host){state, add, next, run, count, destroy};
     return 0;
 }

@@ -7,7 +7,7 @@
 
 int air_make(struct air *air, const struct places *places, double reach_m, sim_time keep)
 {
-    *air = (struct air){.places = places, .free = NONE, .keep = keep};
+    *air = (struct air){.places = places, .free = NONE, .reach_m = reach_m, .keep = keep};
     const double width = (double)places->columns * places->cell_m, height = (double)places->rows * places->cell_m;
     const double smallest = fmax(width, height) / sqrt((double)places->count);
     air->cell_m = fmax(reach_m, smallest);
@@ -73,8 +73,8 @@ int air_put(struct air *air, const struct flight *what, uint32_t *index)
 }
 
 /* What is forgotten leaves the list on the way. */
-static size_t find_in_cell(struct air *air, uint32_t *cell, sim_time from, sim_time now, uint32_t *found,
-                           size_t capacity, size_t count)
+static size_t find_in_cell(struct air *air, uint32_t *cell, const struct place *place, sim_time from, sim_time now,
+                           uint32_t *found, size_t capacity, size_t count)
 {
     for (uint32_t *link = cell; *link != NONE;) {
         const uint32_t index = *link;
@@ -85,7 +85,8 @@ static size_t find_in_cell(struct air *air, uint32_t *cell, sim_time from, sim_t
             air->free = index;
             continue;
         }
-        if (flight->start < now && flight->end > from) {
+        if (flight->start < now && flight->end > from &&
+            place_distance_sq(place, places_at(air->places, flight->sender)) <= air->reach_m * air->reach_m) {
             if (count < capacity) {
                 found[count] = index;
             }
@@ -105,7 +106,7 @@ size_t air_find(struct air *air, const struct place *place, sim_time from, sim_t
     size_t count = 0;
     for (size_t r = row > 0 ? row - 1 : 0; r <= last_row; r++) {
         for (size_t c = column > 0 ? column - 1 : 0; c <= last_column; c++) {
-            count = find_in_cell(air, &air->cells[r * air->columns + c], from, now, found, capacity, count);
+            count = find_in_cell(air, &air->cells[r * air->columns + c], place, from, now, found, capacity, count);
         }
     }
     return count;

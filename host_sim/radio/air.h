@@ -26,7 +26,7 @@ struct air {
     struct flight *flights;
     size_t capacity;
     uint32_t free; /* list of free flights */
-    double cell_m;
+    double reach_m, cell_m;
     size_t columns, rows;
     uint32_t *cells;
     sim_time keep; /* how long a flight that has ended is remembered */
@@ -42,7 +42,7 @@ void air_free(struct air *air);
  * there is no memory. */
 int air_put(struct air *air, const struct flight *what, uint32_t *index);
 
-/* The transmissions in the air at any time in (from, now) whose senders are in the cells about `place`, that is at least all within reach of it. `found` has
+/* The transmissions in the air at any time in (from, now) whose senders are within reach of `place`. `found` has
  * room for `capacity`; beyond that they are not written. Returns their number. */
 size_t air_find(struct air *air, const struct place *place, sim_time from, sim_time now, uint32_t *found,
                 size_t capacity);

@@ -11,7 +11,6 @@ static const double disturbance_db = -10;
 
 enum {
     LISTED_MAX = 1000, /* receivers of a mote that are kept; more are looked up each time */
-    PREFETCH_AHEAD = 8,
     MEETINGS_MAX = 256 /* transmissions that one can meet; more than can fit beside each other in a cell */
 };
 
@@ -502,10 +501,6 @@ static bool deliver(const struct run *run, const struct flight *flight, const st
     }
     uint32_t received = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (i + PREFETCH_AHEAD < count) {
-            __builtin_prefetch(&radio->motes[receivers[i + PREFETCH_AHEAD]]);
-            __builtin_prefetch(&radio->places.position[receivers[i + PREFETCH_AHEAD]]);
-        }
         const enum loss_reason reason = judge(run, flight, receivers[i], meetings);
         if (reason == LOSS_NONE) {
             radio->found[received++] = receivers[i];

@@ -45,6 +45,10 @@ struct mh_mote_config {
 };
 
 struct mh_mote_counters {
+    uint32_t frames_sent;
+    uint32_t frames_received; /* sound ones */
+    uint32_t frames_corrupt;
+    uint32_t frames_unknown;
     uint32_t readings;         /* taken */
     uint32_t readings_refused; /* out of range, out of time */
     uint32_t readings_repeated;
@@ -52,10 +56,6 @@ struct mh_mote_counters {
     uint32_t reports;                 /* measurements handed to the protocol ... */
     uint32_t reports_asked;           /* ... of these, only because a head asked */
     uint32_t reports_no_route;        /* ... of these, lost for want of a next hop, or of room in its queue */
-    uint32_t frames_sent;
-    uint32_t frames_received; /* sound ones */
-    uint32_t frames_corrupt;
-    uint32_t frames_unknown;
 };
 
 /* Memory of a sensor node: sizeof(struct mh_mote) + protocol->state_size, at most 256 bytes on an ATmega128 with the protocol

@@ -57,7 +57,7 @@ static void on_totals(const lcm_recv_buf_t *buffer, const char *channel, void *c
     TEST_ASSERT_TRUE(worker_decode_totals(&link, buffer, &message));
     heard.totals++;
     heard.number = message.number;
-    heard.readings = (int32_t)message.motes[0];
+    heard.readings = (int32_t)message.motes[offsetof(struct mh_mote_counters, readings) / sizeof(uint32_t)];
     motehound_worker_totals_t_decode_cleanup(&message);
 }
 
