@@ -171,6 +171,7 @@ static void next_event(struct world *world, struct input *input)
         break;
     case 4:
         world->now += 16u * byte(input);
+        mh_mote_sent(&world->mote, world->now, (enum mh_sent)(byte(input) % 3));
         break;
     case 5:
         mh_mote_sent(&world->mote, world->now, (enum mh_sent)(byte(input) % 3));
@@ -222,6 +223,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .interval = INTERVAL,
         .window = 900,
     };
+    struct mh_clock clock;
+    const struct mh_clock_config clock_config = {
+        .root = (choice & 64) != 0, .period = choice & 128 ? 3600000 : 2000, .wait = 100, .sent_q8 = 128};
     const struct mh_mote_config config = {
         .id = 7,
         .sensor = &sensor,
@@ -230,6 +234,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .protocol_config = geographic ? (const void *)&protocol_config : &protocol_config.collection,
         .protocol_state = &protocol_state,
         .head_state = &head,
+        .clock = choice & 32 ? &clock_config : NULL,
+        .clock_state = &clock,
     };
     struct world world = {.geographic = geographic,
                           .now = choice & 8 ? 0xFFFFE000u : 5000}; /* also across the wrap of the ticks */

@@ -85,6 +85,15 @@ int main(int argc, char **argv)
                                                       .radius_mm = 8000,
                                                       .sender_x_mm = -100,
                                                       .sender_y_mm = 200}};
+    const struct mh_message sync = {.kind = MH_MESSAGE_SYNC,
+                                    .as.sync = {.sender = 4,
+                                                .root = 1,
+                                                .time_ms = 14000,
+                                                .fraction = 77,
+                                                .stamped = 1,
+                                                .number = 9,
+                                                .round = 5,
+                                                .hops = 2}};
     const char *wire = argv[1], *mote = argv[2];
     const struct mh_message hello = {.kind = MH_MESSAGE_HELLO,
                                      .as.hello = {.sender = 8, .x_mm = 7000, .y_mm = -3000, .sequence = 5}};
@@ -102,8 +111,8 @@ int main(int argc, char **argv)
     int failed = save_frame(wire, "beacon", &beacon) || save_frame(wire, "report", &report) ||
                  save_frame(wire, "request", &request) || save_frame(wire, "hello", &hello) ||
                  save_frame(wire, "landmark", &landmark) || save_frame(wire, "route", &route) ||
-                 save_frame(wire, "face", &face);
-    for (uint8_t choice = 0; choice < 32; choice++) {
+                 save_frame(wire, "face", &face) || save_frame(wire, "sync", &sync);
+    for (uint8_t choice = 0; choice < 64; choice++) {
         char name[20];
         snprintf(name, sizeof name, "track%u", choice);
         failed = failed || save_track(mote, name, choice);

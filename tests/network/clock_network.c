@@ -13,7 +13,7 @@ void clock_network_make(struct clock_network *network, const struct clock_case *
 {
     memset(network, 0, sizeof *network);
     network->c = *c;
-    const uint8_t sent_q8 = c->backoff_us > 0 ? 128 : frame_us % 1000 * 256 / 1000;
+    const uint8_t sent_q8 = (uint8_t)(c->backoff_us > 0 ? 128 : frame_us % 1000 * 256 / 1000);
     network->root = (struct mh_clock_config){.root = true, .period = c->period, .wait = c->wait, .sent_q8 = sent_q8};
     network->other = (struct mh_clock_config){.period = c->period, .wait = c->wait, .sent_q8 = sent_q8};
     for (uint32_t i = 0; i < c->motes; i++) {

@@ -133,8 +133,11 @@ static void hurt(struct mh_mote *mote, mh_tick now)
     (void)mh_mote_frame(mote, now, frame, length);
 }
 
-static void run(const struct mh_protocol *protocol, const void *protocol_config, uint64_t seed)
+static void run(const struct mh_protocol *protocol, const void *protocol_config, bool with_clocks, uint64_t seed)
 {
+    static struct mh_clock clocks[MOTES];
+    static const struct mh_clock_config root = {.root = true, .period = 2000, .wait = 100, .sent_q8 = 128};
+    static const struct mh_clock_config other = {.period = 2000, .wait = 100, .sent_q8 = 128};
     static struct mh_collection collections[MOTES];
     static struct mh_direct directs[MOTES];
     static struct mh_head head;
@@ -157,7 +160,11 @@ static void run(const struct mh_protocol *protocol, const void *protocol_config,
             .protocol = protocol,
             .protocol_config = protocol_config,
             .protocol_state = protocol == &mh_protocol_direct ? (void *)&directs[i] : (void *)&collections[i],
-            .head_state = i == HEAD ? &head : NULL};
+            .head_state = i == HEAD ? &head : NULL,
+            .clock = !with_clocks ? NULL
+                     : i == HEAD  ? &root
+                                  : &other,
+            .clock_state = &clocks[i]};
         configs[i] = config;
         TEST_ASSERT_EQUAL(MH_OK, mh_mote_init(&motes[i], &configs[i], &port, &motes[i], now));
     }
@@ -166,7 +173,7 @@ static void run(const struct mh_protocol *protocol, const void *protocol_config,
         now += draw(20);
         now += draw(5000) == 0 ? draw(100000) : 0;           /* asleep for long */
         now += step == STEPS / 4 * 3 ? draw(UINT32_MAX) : 0; /* a clock set anew */
-        const unsigned what = draw(3);
+        const unsigned what = draw(with_clocks ? 4 : 3);
         const unsigned before = sent[mote - motes];
         if (what == 0) {
             hurt(mote, now);
@@ -174,10 +181,14 @@ static void run(const struct mh_protocol *protocol, const void *protocol_config,
             const struct mh_reading reading = {now - draw(6000) + (draw(50) == 0 ? draw(UINT32_MAX) : 0),
                                                (int32_t)draw(UINT32_MAX) / (draw(2) ? 1 : 1000000), (uint8_t)draw(2)};
             (void)mh_mote_reading(mote, now, &reading);
+        } else if (what == 3) {
+            mh_mote_sent(mote, now, (enum mh_sent)draw(3));
         } else {
             const unsigned set_before = alarms[mote - motes];
             mh_mote_alarm(mote, now);
-            TEST_ASSERT_EQUAL(protocol == &mh_protocol_direct && mote != &motes[HEAD] ? set_before : set_before + 1,
+            TEST_ASSERT_EQUAL(with_clocks                                               ? alarms[mote - motes]
+                              : protocol == &mh_protocol_direct && mote != &motes[HEAD] ? set_before
+                                                                                        : set_before + 1,
                               alarms[mote - motes]);
         }
         TEST_ASSERT_LESS_OR_EQUAL(before + 5, sent[mote - motes]); /* no event sets off a burst */
@@ -191,12 +202,21 @@ static void run(const struct mh_protocol *protocol, const void *protocol_config,
 void setUp(void) {}
 void tearDown(void) {}
 
+static void clocks_stand_anything(void)
+{
+    struct mh_collection_config config;
+    mh_collection_config_default(&config);
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        run(&mh_protocol_collection, &config, true, seed);
+    }
+}
+
 static void collection_stands_anything(void)
 {
     struct mh_collection_config config;
     mh_collection_config_default(&config);
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        run(&mh_protocol_collection, &config, seed);
+        run(&mh_protocol_collection, &config, false, seed);
     }
 }
 
@@ -205,7 +225,7 @@ static void direct_stands_anything(void)
     struct mh_direct_config config;
     mh_direct_config_default(&config);
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        run(&mh_protocol_direct, &config, seed);
+        run(&mh_protocol_direct, &config, false, seed);
     }
 }
 
@@ -213,6 +233,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(collection_stands_anything);
+    RUN_TEST(clocks_stand_anything);
     RUN_TEST(direct_stands_anything);
     port_exit(UNITY_END() > 0);
     return 0;

@@ -55,7 +55,7 @@ static void fit(struct mh_clock *clock)
         sum_y += pairs[i].offset_q8;
     }
     const int32_t mean_t = (int32_t)(sum_t / n), mean_y = (int32_t)(sum_y / n);
-    /* |t| < 2^28, |y| < 2^25, n <= 2^5: no sum passes 2^61 */
+    /* |t| < 2^29, |y| < 2^28, n <= 2^5: no sum passes 2^62 */
     int64_t sxx = (int64_t)clock->variance_q16 * PRIOR_SXX_PER_VARIANCE, sxy = 0;
     for (uint8_t i = 0; i < n; i++) {
         const int64_t t = mh_ticks_between(origin, pairs[i].local) - mean_t;
@@ -111,19 +111,27 @@ static bool is_outlier(const struct mh_clock *clock, mh_tick local, int32_t resi
     return scaled * scaled > (uint64_t)REJECT_SQUARED * clock->variance_q16;
 }
 
+static bool is_between(mh_tick earlier, mh_tick later, int32_t least, int32_t most)
+{
+    const int32_t ticks = mh_ticks_between(earlier, later);
+    return ticks >= least && ticks <= most;
+}
+
 static void add(struct mh_clock *clock, mh_tick local, int32_t offset_q8)
 {
     struct mh_clock_pair *newest = clock->count > 0 ? &clock->pairs[clock->count - 1] : NULL;
-    if (newest && clock->merged < UINT8_MAX &&
-        mh_ticks_between(newest->local, local) < (int32_t)(clock->config->period / MERGE_SHARE)) {
+    const int32_t near = (int32_t)(clock->config->period / MERGE_SHARE);
+    if (newest && clock->merged < UINT8_MAX && is_between(newest->local, local, -near, near)) {
         clock->merged++;
         newest->local += (mh_tick)(mh_ticks_between(newest->local, local) / clock->merged);
         newest->offset_q8 += (offset_q8 - newest->offset_q8) / clock->merged;
         return;
     }
-    uint8_t old = 0; /* where frames are lost, pairs are farther apart */
+    uint8_t old =
+        0; /* where frames are lost, pairs are farther apart; none is ahead of its time, unless ticks have wrapped unseen */
     const int32_t longest = (int32_t)(4 * MH_CLOCK_PAIRS * clock->config->period);
-    while (old < clock->count && mh_ticks_between(clock->pairs[old].local, local) > longest) {
+    while (old < clock->count &&
+           !is_between(clock->pairs[old].local, local, -(int32_t)clock->config->period, longest)) {
         old++;
     }
     if (old == 0 && clock->count == MH_CLOCK_PAIRS) {

@@ -7,8 +7,8 @@
 
 #define ME 7u
 #define ROOT 1u
-#define PERIOD 15000u
-#define WAIT 1500u
+#define PERIOD ((mh_tick)15000)
+#define WAIT ((mh_tick)1500)
 
 static struct mh_clock_config config;
 static struct mh_clock clock;
@@ -130,8 +130,8 @@ static void test_time_never_runs_backwards_and_inverts_exactly(void)
             }
             mh_clock_message(&clock, 200 + i * PERIOD, &message);
         }
-        mh_tick before = mh_clock_network(&clock, 60000, NULL);
-        for (mh_tick local = 60001; local < 70000; local += 1) {
+        mh_tick before = mh_clock_network(&clock, 64000, NULL);
+        for (mh_tick local = 64001; local < 67500; local++) {
             const mh_tick network = mh_clock_network(&clock, local, NULL);
             TEST_ASSERT_TRUE((uint32_t)(network - before) <= 2);
             if (network != before) {

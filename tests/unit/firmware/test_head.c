@@ -191,6 +191,29 @@ static void without_a_position_the_next_instant_is_gathered_all_the_same(void)
     TEST_ASSERT_EQUAL_UINT32(1, head.counters.estimates);
 }
 
+/* Each node samples by its own idea of the time. */
+static void what_is_nearly_of_an_instant_is_of_it(void)
+{
+    config.tolerance = 3;
+    TEST_ASSERT_EQUAL(MH_OK, mh_head_init(&head, &config, 5 * T));
+    TEST_ASSERT_EQUAL(MH_OK, measure(1, 5 * T + 3, 10, 0));
+    TEST_ASSERT_EQUAL(MH_OK, measure(2, 5 * T - 3, 10, 0));
+    TEST_ASSERT_EQUAL(MH_OK, measure(3, 5 * T - 4, 10, 0));
+    TEST_ASSERT_EQUAL(MH_OK, measure(4, 5 * T + 4, 10, 0));       /* of the next instant */
+    TEST_ASSERT_EQUAL(MH_OK, measure(5, 6 * T + 3, 10, 0));       /* of the next instant, too */
+    TEST_ASSERT_EQUAL(MH_ERR_TIME, measure(6, 4 * T + 3, 10, 0)); /* of the one before */
+    TEST_ASSERT_EQUAL(MH_ERR_TIME, measure(7, 6 * T + 4, 10, 0)); /* of the one after the next */
+    TEST_ASSERT_EQUAL(MH_ERR_REPEATED, measure(1, 5 * T - 1, 10, 0));
+    TEST_ASSERT_EQUAL_UINT32(1, head.counters.late);
+    TEST_ASSERT_EQUAL_UINT32(1, head.counters.early);
+    mh_head_close(&head, &estimate);
+    TEST_ASSERT_EQUAL(3, seen.count);
+    mh_head_close(&head, &estimate);
+    TEST_ASSERT_EQUAL(2, seen.count);
+    config.tolerance = T / 2;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_head_init(&head, &config, 5 * T));
+}
+
 static void instants_go_on_across_the_wrap(void)
 {
     TEST_ASSERT_EQUAL_UINT32((mh_tick)0 - 300, first_instant(T - 300, (mh_tick)0 - 400));
@@ -215,6 +238,7 @@ int main(void)
     RUN_TEST(late_early_and_repeated_are_counted);
     RUN_TEST(the_smallest_increment_gives_way);
     RUN_TEST(without_a_position_the_next_instant_is_gathered_all_the_same);
+    RUN_TEST(what_is_nearly_of_an_instant_is_of_it);
     RUN_TEST(instants_go_on_across_the_wrap);
     port_exit(UNITY_END() > 0);
     return 0;

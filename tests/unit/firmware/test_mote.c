@@ -240,6 +240,79 @@ static void bad_configurations_are_refused(void)
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_mote_init(&mote, &config, &port, NULL, 0));
 }
 
+/* The root's sync message `number`, heard at `now`: its last one ended at `network`. */
+static void receive_sync(mh_tick now, uint8_t number, mh_tick network)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_SYNC,
+                                       .as.sync = {.sender = HEAD,
+                                                   .root = HEAD,
+                                                   .time_ms = (int32_t)network,
+                                                   .fraction = 128,
+                                                   .stamped = number > 1,
+                                                   .number = number,
+                                                   .round = number}};
+    receive(now, &message);
+}
+
+static struct mh_clock clock;
+static const struct mh_clock_config keeps_time = {.period = 15000, .wait = 1500, .sent_q8 = 128};
+
+/* Its own clock shows 1,000,000 more than the network's time. */
+static void a_node_speaks_the_networks_time(void)
+{
+    const mh_tick ahead = 1000000;
+    config.clock = &keeps_time;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_mote_init(&mote, &config, &port, NULL, 0)); /* no room for its state */
+    config.clock_state = &clock;
+    come_up(ahead);
+    receive_beacon(ahead + 1, false);
+    read(ahead + 100, 500, MH_ERR_TIME); /* nobody knows when that was */
+    TEST_ASSERT_EQUAL_UINT32(1, mote.counters.readings_unsynchronised);
+    TEST_ASSERT_EQUAL(0, port_saw.transmitted);
+    receive_sync(ahead + 200, 1, 0);
+    receive_sync(ahead + 700, 2, 200);
+    read(ahead + T, 500, MH_OK);
+    TEST_ASSERT_EQUAL(MH_MESSAGE_REPORT, port_saw.message.kind);
+    TEST_ASSERT_EQUAL_INT32(T, port_saw.message.as.report.time_ms);
+    receive_request(ahead + 2 * T - 10, 2 * T, 10000000);
+    read(ahead + 2 * T, 0, MH_OK); /* worth no report but asked for */
+    TEST_ASSERT_EQUAL_UINT32(1, mote.counters.reports_asked);
+    TEST_ASSERT_EQUAL_INT32(2 * T, port_saw.message.as.report.time_ms);
+    /* the alarm is in its own time: the round is relayed */
+    TEST_ASSERT_TRUE(port_saw.alarm - (ahead + 200) <= 1502);
+    mh_mote_alarm(&mote, port_saw.alarm);
+    TEST_ASSERT_EQUAL(MH_MESSAGE_SYNC, port_saw.message.kind);
+    TEST_ASSERT_EQUAL_UINT32(MH_BROADCAST, port_saw.destination);
+    TEST_ASSERT_EQUAL(0, port_saw.sleeps); /* it has to listen */
+}
+
+/* A head that is not the root: no instant before the time is known, then the network's, at its own time of them. */
+static void a_head_keeps_the_networks_instants(void)
+{
+    const mh_tick ahead = 777;
+    config.clock = &keeps_time;
+    config.clock_state = &clock;
+    come_up_as_head(ahead);
+    mh_mote_alarm(&mote, ahead + 5 * T);
+    TEST_ASSERT_EQUAL(0, head.counters.estimates);
+    TEST_ASSERT_EQUAL_UINT32(T, head.instant); /* not closed */
+    receive_sync(ahead + 6 * T, 1, 0);
+    receive_sync(ahead + 6 * T + 500, 2, 6 * T);
+    TEST_ASSERT_EQUAL_UINT32(7 * T, head.instant);
+    tracker_does.step_status = MH_OK;
+    for (mh_tick due = 7 * T + 400; due < 20 * T; due += T) { /* one position an instant, never at once again */
+        while (port_saw.alarm != ahead + due) {
+            const mh_tick alarm = port_saw.alarm;
+            TEST_ASSERT_TRUE(mh_tick_before(alarm, ahead + due));
+            mh_mote_alarm(&mote, alarm);
+            TEST_ASSERT_TRUE(mh_tick_before(alarm, port_saw.alarm));
+        }
+        mh_mote_alarm(&mote, port_saw.alarm);
+        TEST_ASSERT_EQUAL_UINT32(due - 400, port_saw.report_time);
+    }
+    TEST_ASSERT_EQUAL(13, port_saw.reports);
+}
+
 static void a_node_reports_what_is_worth_it(void)
 {
     come_up(0);
@@ -440,6 +513,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(bad_configurations_are_refused);
+    RUN_TEST(a_node_speaks_the_networks_time);
+    RUN_TEST(a_head_keeps_the_networks_instants);
     RUN_TEST(a_node_reports_what_is_worth_it);
     RUN_TEST(bad_readings_are_counted_and_leave_no_trace);
     RUN_TEST(a_silent_node_answers_when_asked);
