@@ -330,6 +330,9 @@ static int run(void *state, sim_time until, const struct host_event *events, siz
     for (size_t i = 0;;) {
         const sim_time alarm = event_queue_next(&host->alarms);
         if (i < count && events[i].time <= alarm) {
+            if (i + PREFETCH_AHEAD < count && events[i + PREFETCH_AHEAD].kind != HOST_FRAME) {
+                prefetch(slot_of(host, events[i + PREFETCH_AHEAD].mote));
+            }
             happen(host, &events[i++]);
         } else if (alarm < until) {
             struct event event;

@@ -7,6 +7,7 @@ if [ -z "$IN_OWN_NETWORK" ]; then
     IN_OWN_NETWORK=1 own_network sh -c 'ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec "$@"' sh bash "$0"
     exit $?
 fi
+export MARK=$$ # of all processes that are started here
 bus='udpm://239.255.76.67:7667?ttl=0'
 small=("$MOTEHOUND" run luo_exp1 --set network.nodes=200 --set radio.range_m=20 --set source.speed_mps=4)
 same() { for file in track.csv runs.csv summary.json; do cmp "$1/$file" "$2/$file" || complain "$2/$file differs from that of one process"; done; }
@@ -57,7 +58,7 @@ kill $foreign
 wait $foreign
 
 # a worker that dies: the run ends, or replaces it
-workers_of() { pgrep -P "$1" -f 'motehound worker' | head -1; }
+workers_of() { awk -v parent="$1" '$4 == parent {print $1; exit}' /proc/[0-9]*/stat 2>/dev/null; }
 kill_one_of() { # PROCESS: one of its workers, once the run goes on
     local victim
     for _ in $(seq 200); do
@@ -94,5 +95,8 @@ kill -INT $run
 wait $run && complain "interrupted while it waits: status 0"
 grep -q 'interrupted' err.txt || complain "interrupted while it waits: $(cat err.txt)"
 nothing no
-[ -z "$(pgrep -f "$MOTEHOUND worker")" ] || complain "workers are left"
+sleep 0.5
+for process in $(grep -lzx "MARK=$MARK" /proc/[0-9]*/environ 2>/dev/null); do
+    ! tr '\0' ' ' <"${process%environ}cmdline" | grep -q ' worker ' || complain "a worker is left: $process"
+done
 conclude
