@@ -22,7 +22,7 @@ struct network_config {
     const struct scenario *scenario;
     const struct roster *roster;
     const struct host_provider *hosts; /* NULL: the motes live in this process */
-    double range_m; /* of the radio */
+    double range_m;                    /* of the radio */
     uint64_t seed;
     const struct observer *observer;
     double start_s; /* what the observer takes simulated time 0 for */

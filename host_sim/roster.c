@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
+enum { MICROSECONDS_PER_TICK = SIM_TIME_PER_S / MH_TICKS_PER_S };
 
 struct mh_place place_from_metres(double x_m, double y_m, double z_m)
 {

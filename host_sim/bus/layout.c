@@ -46,30 +46,42 @@ static const char *after_group(const char *layout)
     return layout;
 }
 
-/* To the end of the group in which `layout` stands. Every turn of every loop reads at least one byte. */
-static void read_group(const char *layout, struct reader *reader, int depth)
-{
-    while (reader->sound && *layout != '\0' && *layout != ']' && *layout != '}') {
-        const char what = *layout++;
-        if (what == 's') {
-            skip_string(reader);
-        } else if (what == '[' || what == '{') {
-            uint32_t count = length(reader, what == '[' ? 4 : 2);
-            reader->sound = reader->sound && depth < DEPTH_MAX;
-            for (; count > 0 && reader->sound; count--) {
-                read_group(layout, reader, depth + 1);
-            }
-            layout = after_group(layout);
-        } else {
-            skip(reader, (size_t)(what - '0'));
-        }
-    }
-}
+/* A group that is being read: where it stands in the layout, and how often it is still to come. */
+struct group {
+    const char *begin;
+    uint32_t left;
+};
 
+/* Every step of the loop either reads at least one byte of the message or goes on in the layout. */
 bool layout_fits(const char *layout, const void *data, size_t size)
 {
     struct reader reader = {data, (const uint8_t *)data + size, true};
+    struct group groups[DEPTH_MAX];
+    int depth = 0;
     skip(&reader, FINGERPRINT);
-    read_group(layout, &reader, 0);
+    while (reader.sound && *layout != '\0') {
+        const char what = *layout++;
+        if (what == 's') {
+            skip_string(&reader);
+        } else if (what == ']' || what == '}') {
+            struct group *group = &groups[depth - 1];
+            if (--group->left > 0) {
+                layout = group->begin;
+            } else {
+                depth--;
+            }
+        } else if (what == '[' || what == '{') {
+            const uint32_t count = length(&reader, what == '[' ? 4 : 2);
+            if (count == 0) {
+                layout = after_group(layout);
+            } else if (depth == DEPTH_MAX) {
+                reader.sound = false;
+            } else {
+                groups[depth++] = (struct group){layout, count};
+            }
+        } else {
+            skip(&reader, (size_t)(what - '0'));
+        }
+    }
     return reader.sound && reader.at == reader.end;
 }

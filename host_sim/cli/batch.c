@@ -35,8 +35,8 @@ static bool execute(const struct work *work, unsigned run, struct slot *slot)
     struct bus bus;
     struct simulation_counters counters = {0};
     const uint64_t seed = batch->seed + run;
-    if (bus_open(&bus, (int32_t)run, results_log_path(work->results, run, path), batch->outside, batch->pace, slot->error,
-                 ERROR_SIZE) != 0) {
+    if (bus_open(&bus, (int32_t)run, results_log_path(work->results, run, path), batch->outside, batch->pace,
+                 slot->error, ERROR_SIZE) != 0) {
         return false;
     }
     bool sound = recorder_subscribe(&slot->recorder, bus.lcm) == 0;

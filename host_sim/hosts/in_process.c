@@ -5,9 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CACHE_LINE = 64, PREFETCH_AHEAD = 6 };
-
-#define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
+enum { CACHE_LINE = 64, PREFETCH_AHEAD = 6, MICROSECONDS_PER_TICK = SIM_TIME_PER_S / MH_TICKS_PER_S };
 
 /* Aligned for whatever a tracker or a protocol keeps. */
 union any {
