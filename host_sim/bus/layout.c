@@ -56,7 +56,7 @@ struct group {
 bool layout_fits(const char *layout, const void *data, size_t size)
 {
     struct reader reader = {data, (const uint8_t *)data + size, true};
-    struct group groups[DEPTH_MAX];
+    struct group groups[DEPTH_MAX] = {{NULL, 0}};
     int depth = 0;
     skip(&reader, FINGERPRINT);
     while (reader.sound && *layout != '\0') {
