@@ -56,7 +56,7 @@ struct group {
 bool layout_fits(const char *layout, const void *data, size_t size)
 {
     struct reader reader = {data, (const uint8_t *)data + size, true};
-    struct group groups[DEPTH_MAX] = {{NULL, 0}};
+    struct group groups[DEPTH_MAX] = {{layout, 0}};
     int depth = 0;
     skip(&reader, FINGERPRINT);
     while (reader.sound && *layout != '\0') {
@@ -64,6 +64,9 @@ bool layout_fits(const char *layout, const void *data, size_t size)
         if (what == 's') {
             skip_string(&reader);
         } else if (what == ']' || what == '}') {
+            if (depth == 0) {
+                return false; /* a layout that closes what it has not opened */
+            }
             struct group *group = &groups[depth - 1];
             if (--group->left > 0) {
                 layout = group->begin;
