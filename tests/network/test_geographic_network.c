@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { SEEDS = 1, NODES = 500 }; /* sanitizers take ten times as long */
@@ -20,9 +21,6 @@ static struct {
     double square;
     unsigned count;
 } errors;
-
-void setUp(void) {}
-void tearDown(void) {}
 
 static double square(double a) { return a * a; }
 
@@ -43,23 +41,28 @@ struct outcome {
     unsigned estimates, lost;
 };
 
-/* Reports that reached the head in time, as a share of those that were published; frames a report takes, and its losses. */
-static struct outcome run(enum routing_kind routing, const char *profile, unsigned nodes)
+static struct scenario scenario;
+
+void setUp(void)
 {
     static char diffusion[] = "diffusion";
-    static char name[20];
+    scenario = e1();
+    scenario.radio.retries = scenario.radio.backoffs = -1;
+    scenario.tracker.name = diffusion;
+    scenario.protocol.hello_s = 10;
+}
+
+void tearDown(void) {}
+
+/* Reports that reached the head in time, as a share of those that were published; frames a report takes, and its losses. */
+static struct outcome run(enum routing_kind routing)
+{
+    static const char *const names[] = {"tree", "geographic", "greedy"};
     const struct observer observer = {.estimate = hear_estimate};
     struct outcome sum = {0};
+    scenario.protocol.routing = routing;
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
-        struct scenario scenario = e1();
         char error[300] = "";
-        snprintf(name, sizeof name, "%s", profile);
-        scenario.radio.profile = name;
-        scenario.radio.retries = scenario.radio.backoffs = -1;
-        scenario.tracker.name = diffusion;
-        scenario.network.nodes = nodes;
-        scenario.protocol.routing = routing;
-        scenario.protocol.hello_s = 10;
         errors.square = errors.count = 0;
         TEST_ASSERT_EQUAL_INT_MESSAGE(
             0, simulation_run(&scenario, seed, &observer, NULL, &counters, error, sizeof error), error);
@@ -71,9 +74,8 @@ static struct outcome run(enum routing_kind routing, const char *profile, unsign
             sum.lost += counters.protocol.lost[reason];
         }
     }
-    printf("%-10s %-7s %4u nodes: %5.1f %% in time, %.2f frames each, %u lost, rmse %.3f m at %u instants\n",
-           routing == ROUTING_TREE ? "tree" : "geographic", profile, nodes, 100 * sum.delivered, sum.hops, sum.lost,
-           sum.rmse_m, sum.estimates);
+    printf("%-10s %5.1f %% in time, %5.2f frames each, %4u lost, rmse %6.3f m at %u instants\n", names[routing],
+           100 * sum.delivered, sum.hops, sum.lost, sum.rmse_m, sum.estimates);
     return sum;
 }
 
@@ -81,7 +83,8 @@ static struct outcome run(enum routing_kind routing, const char *profile, unsign
  * first instant come before the hellos. */
 static void as_good_as_the_tree_without_losses(void)
 {
-    const struct outcome tree = run(ROUTING_TREE, "ideal", NODES), places = run(ROUTING_GEOGRAPHIC, "ideal", NODES);
+    scenario.network.nodes = NODES;
+    const struct outcome tree = run(ROUTING_TREE), places = run(ROUTING_GEOGRAPHIC);
     TEST_ASSERT_TRUE(places.delivered > 0.995);
     TEST_ASSERT_TRUE(places.hops < 1.2 * tree.hops);
     TEST_ASSERT_TRUE(fabs(places.rmse_m - tree.rmse_m) < 0.1 * tree.rmse_m);
@@ -91,10 +94,46 @@ static void as_good_as_the_tree_without_losses(void)
 /* At each instant many report at once; a unicast frame that collides is lost on the tree, and sent again by the link. */
 static void acknowledged_hops_bear_contention(void)
 {
-    const struct outcome tree = run(ROUTING_TREE, "802154", 500), places = run(ROUTING_GEOGRAPHIC, "802154", 500);
+    scenario.radio.profile = "802154";
+    scenario.network.nodes = 500;
+    const struct outcome tree = run(ROUTING_TREE), places = run(ROUTING_GEOGRAPHIC);
     TEST_ASSERT_TRUE(places.delivered > 0.95);
     TEST_ASSERT_TRUE(places.delivered > tree.delivered + 0.2);
     TEST_ASSERT_TRUE(places.rmse_m < tree.rmse_m);
+}
+
+/* A third of the nodes dies. Their neighbours miss the acknowledgements and go by others. */
+static void the_dead_are_left_out(void)
+{
+    scenario.network.nodes = 500;
+    scenario.faults.dead.share = 0.33;
+    scenario.faults.dead.from_s = 40;
+    const struct outcome places = run(ROUTING_GEOGRAPHIC);
+    TEST_ASSERT_TRUE(places.delivered > 0.99);
+}
+
+/* Nodes everywhere but in a ring around the head, broader than the radio's range, with a gate in its west. */
+static void a_ring_is_walked_around(void)
+{
+    static char path[] = "/tmp/motehound_ring_XXXXXX";
+    const int file = mkstemp(path);
+    TEST_ASSERT_TRUE(file >= 0);
+    FILE *nodes = fdopen(file, "w");
+    fprintf(nodes, "node,x_m,y_m\n");
+    for (unsigned i = 0; i < 900; i++) { /* Roberts' R2 sequence */
+        const double x = 80 * fmod(0.5 + i * 0.7548776662466927, 1), y = 80 * fmod(0.5 + i * 0.5698402909980532, 1);
+        const double radius = hypot(x - 40, y - 40), from_west = fabs(atan2(y - 40, 40 - x));
+        if (radius < 12 || radius > 28 || from_west < 0.4) {
+            fprintf(nodes, "%u,%.3f,%.3f\n", i, x, y);
+        }
+    }
+    fclose(nodes);
+    scenario.network.layout = LAYOUT_FILE;
+    scenario.network.file = path;
+    const struct outcome greedy = run(ROUTING_GREEDY), places = run(ROUTING_GEOGRAPHIC);
+    remove(path);
+    TEST_ASSERT_TRUE(greedy.delivered < 0.9 && greedy.lost > 100);
+    TEST_ASSERT_TRUE(places.delivered > 0.99);
 }
 
 int main(void)
@@ -102,6 +141,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(as_good_as_the_tree_without_losses);
     RUN_TEST(acknowledged_hops_bear_contention);
+    RUN_TEST(the_dead_are_left_out);
+    RUN_TEST(a_ring_is_walked_around);
     port_exit(UNITY_END() > 0);
     return 0;
 }
