@@ -55,7 +55,7 @@
 #endif
 
 /* Neighbours that a node of a geographic protocol keeps, 20 bytes each. Face routing delivers for sure where no node has more neighbours
- * than this in the Gabriel graph (4 on average, 9 in 10,000 random nodes); more of them make greedy hops longer in a dense field. */
+ * than this in the Gabriel graph (4 on average, at most 9 of 100,000 random nodes); more of them make greedy hops longer in a dense field. */
 #ifndef MH_NEIGHBOURS_MAX
 #ifdef __AVR__
 #define MH_NEIGHBOURS_MAX 16

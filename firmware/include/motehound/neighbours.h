@@ -58,7 +58,7 @@ struct mh_neighbours {
 enum mh_status mh_neighbours_init(struct mh_neighbours *table, mh_node_id id, const struct mh_place *place,
                                   uint8_t capacity, mh_tick lifetime);
 
-/* A hello came in. Cost: linear in the table; on an ATmega128 about 1 ms. Returns MH_OK, or MH_NONE if its sender is not kept.
+/* A hello came in. Cost: linear in the table; on an ATmega128 about 4 ms. Returns MH_OK, or MH_NONE if its sender is not kept.
  * Errors: MH_ERR_ARGUMENT (it bears this node's own identifier). */
 enum mh_status mh_neighbours_hello(struct mh_neighbours *table, mh_tick now, const mh_hello_t *hello);
 

@@ -19,7 +19,11 @@ struct mh_place mh_place_from_offset(const struct mh_place *origin, struct mh_ve
 uint32_t mh_square_root(uint64_t square)
 {
     uint64_t result = 0;
-    for (uint64_t bit = (uint64_t)1 << 62; bit != 0; bit >>= 2) {
+    uint64_t bit = (uint64_t)1 << 62;
+    while (bit > square) {
+        bit >>= 2;
+    }
+    for (; bit != 0; bit >>= 2) {
         const uint64_t trial = result + bit;
         result >>= 1;
         if (square >= trial) {

@@ -51,6 +51,9 @@ static const struct mh_neighbour *greedy(const struct mh_neighbours *table, mh_n
         if (!mh_neighbour_usable(n) || (n->id != destination && !is_nearer(square, n->id, limit_square, id))) {
             continue;
         }
+        if (best && square > best_square && mh_neighbour_quality(n) <= mh_neighbour_quality(best)) {
+            continue; /* spares the root */
+        }
         const uint64_t score = (uint64_t)(limit - mh_square_root(square)) * mh_neighbour_quality(n);
         if (!best || score > best_score ||
             (score == best_score && (n->id == destination || is_nearer(square, n->id, best_square, best->id)))) {
