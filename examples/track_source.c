@@ -32,7 +32,7 @@ int main(void)
     struct mh_interest asked = {.radius_mm = 0};
     struct mh_estimate estimate = {.time = 0};
     /* zero, Q11.20 a count, smallest and largest count, ticks between samples, chi, report always */
-    const struct mh_sensor_config sensor = {0, MH_Q20_ONE / 1000, 0, 65535, INTERVAL, MH_Q20(0.2f), false};
+    const struct mh_sensor_config sensor = {0, MH_Q20_ONE / 1000, 0, 65535, INTERVAL, MH_Q20(0.2f), false, 0};
     mh_diffusion_config_default(&config);
     mh_tracker_diffusion.init(&track, &config, INTERVAL);
     for (mh_node_id i = 0; i < NODES; i++) {

@@ -67,6 +67,9 @@ struct mh_mote {
     bool tracking; /* the network follows a track */
     bool asked;    /* the sample of asked_time is to be reported, whatever it is */
     mh_tick asked_time;
+    bool report_waits;       /* a sample is to be reported ... */
+    mh_tick report_time;     /* ... at this time of the mote's own ... */
+    mh_tick report_instant;  /* ... taken then, in the network's */
     mh_tick protocol_alarm;  /* when the protocol's timer() is due ... */
     bool protocol_alarm_set; /* ... if it is */
     mh_tick alarm;           /* as last told to the port ... */
@@ -82,7 +85,8 @@ struct mh_mote {
 enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *config, const struct mh_port *port,
                             void *port_context, mh_tick now);
 
-/* The sensor has sampled, at reading->time, at or before `now`. Reports the sample if it is worth it or asked for.
+/* The sensor has sampled, at reading->time, at or before `now`. Reports the sample if it is worth it or asked for; after a wait,
+ * if the sensor's configuration spreads reports, and only if it still is then.
  * Errors: those of mh_sensor_take, MH_ERR_TIME also for a reading from the future or before the network's time is known (each counted; the mote goes on),
  * MH_ERR_ARGUMENT (no sensor). */
 enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct mh_reading *reading);

@@ -24,6 +24,9 @@ struct mh_sensor_config {
     mh_tick interval;   /* between samples, 1 to 3,600,000; jitter of up to a quarter of it is tolerated */
     mh_q20 threshold;   /* chi: report when increment >= chi, or value > chi while nothing is tracked */
     bool report_always; /* report every reading (ranges), whatever chi says */
+    /* The reports of one instant leave spread over so long, so that neighbours who sample together do not all speak at once. Below
+     * interval; 0: at once. Leave them the rest of the head's window to travel. */
+    mh_tick report_spread;
 };
 
 /* A sample that was taken. */
@@ -47,8 +50,8 @@ struct mh_sensor {
     uint8_t count;
 };
 
-/* Begin with an empty history. Errors: MH_ERR_ARGUMENT (a null pointer, interval or q20_per_count outside its range,
- * counts_min > counts_max). */
+/* Begin with an empty history. Errors: MH_ERR_ARGUMENT (a null pointer, interval, q20_per_count or
+ * report_spread outside its range, counts_min > counts_max). */
 enum mh_status mh_sensor_init(struct mh_sensor *sensor, const struct mh_sensor_config *config);
 
 /* Take one reading. A late one (older than the newest) fills its gap and is differenced against its own predecessor: the

@@ -46,7 +46,7 @@ static struct mh_sample sample_of(const struct mh_sensor *sensor, const struct m
 enum mh_status mh_sensor_init(struct mh_sensor *sensor, const struct mh_sensor_config *config)
 {
     if (!sensor || !config || config->interval < 1 || config->interval > 3600000u || config->q20_per_count < 1 ||
-        config->counts_min > config->counts_max) {
+        config->counts_min > config->counts_max || config->report_spread >= config->interval) {
         return MH_ERR_ARGUMENT;
     }
     memset(sensor, 0, sizeof *sensor);

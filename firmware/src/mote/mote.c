@@ -1,5 +1,7 @@
 #include "motehound/mote.h"
 
+#include "motehound/spread.h"
+
 #include <string.h>
 
 static void *protocol_state(const struct mh_mote *mote) { return mote->config->protocol_state; }
@@ -36,12 +38,15 @@ static void want(struct earliest *alarm, mh_tick time)
     alarm->wanted = true;
 }
 
-/* One alarm of the port serves the protocol's timer, the clock's and the head's deadline, which moves with the network's time. The
+/* One alarm of the port serves the protocol's timer, the report that waits, the clock's and the head's deadline, which moves with the network's time. The
  * port hears of it when it changes, and after an alarm, which has used it up. */
 static void set_alarm(struct mh_mote *mote, bool used_up)
 {
     struct earliest alarm = {mote->protocol_alarm_set, mote->protocol_alarm};
     mh_tick time;
+    if (mote->report_waits) {
+        want(&alarm, mote->report_time);
+    }
     if (mote->config->clock && mh_clock_due(mote->config->clock_state, &time)) {
         want(&alarm, time);
     }
@@ -76,6 +81,43 @@ static void report(struct mh_mote *mote, mh_tick now, const struct mh_sample *sa
         return;
     }
     mh_sensor_mark_reported(&mote->sensor, sample);
+}
+
+/* Report the sample if it is worth it or asked for. */
+static void report_if_wanted(struct mh_mote *mote, mh_tick now, const struct mh_sample *sample)
+{
+    const bool asked = mote->asked && mh_sensor_is_of(&mote->sensor, sample, mote->asked_time);
+    if (mh_sensor_reports(&mote->sensor, sample, mote->tracking)) {
+        report(mote, now, sample, 0);
+    } else if (asked) {
+        report(mote, now, sample, MH_MEASUREMENT_ASKED);
+    }
+    /* answered, or the sample asked for is so long overdue that nobody waits for it */
+    if (asked || mh_ticks_between(mote->asked_time, sample->time) > 2 * (int32_t)mote->config->sensor->interval) {
+        mote->asked = false;
+    }
+}
+
+static void report_waiting(struct mh_mote *mote, mh_tick now)
+{
+    struct mh_sample sample;
+    mote->report_waits = false;
+    if (mh_sensor_recall(&mote->sensor, mote->report_instant, &sample) == MH_OK && !sample.reported) {
+        report_if_wanted(mote, now, &sample);
+    }
+}
+
+/* The same after a wait, if reports are spread. */
+static void report_soon(struct mh_mote *mote, mh_tick now, const struct mh_sample *sample)
+{
+    const mh_tick spread = mote->config->sensor->report_spread;
+    if (spread == 0 || mote->config->head) {
+        report_if_wanted(mote, now, sample);
+    } else {
+        mote->report_waits = true;
+        mote->report_time = now + mh_spread(mote->node.id, sample->time, spread);
+        mote->report_instant = sample->time;
+    }
 }
 
 static void transmit(struct mh_mote *mote, mh_node_id destination, const struct mh_message *message)
@@ -122,11 +164,14 @@ static void protocol_asked(void *context, mh_tick now, const struct mh_interest 
     if (!mote->config->sensor || !mh_place_within(&mote->node.place, &interest->centre, interest->radius_mm)) {
         return;
     }
-    if (mh_sensor_recall(&mote->sensor, time, &sample) != MH_OK) {
-        mote->asked = true;
-        mote->asked_time = time;
-    } else if (!sample.reported) {
-        report(mote, now, &sample, MH_MEASUREMENT_ASKED);
+    const bool taken = mh_sensor_recall(&mote->sensor, time, &sample) == MH_OK;
+    if (taken && sample.reported) {
+        return;
+    }
+    mote->asked = true;
+    mote->asked_time = time;
+    if (taken && !mote->report_waits) {
+        report_soon(mote, now, &sample);
     }
 }
 
@@ -202,6 +247,9 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
         mote->counters.readings_unsynchronised++;
         return MH_ERR_TIME;
     }
+    if (mote->report_waits) {
+        report_waiting(mote, now); /* late, or of another target */
+    }
     struct mh_sample sample;
     struct mh_reading stamped = *reading;
     stamped.time = network_time(mote, reading->time);
@@ -216,16 +264,7 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
         return status;
     }
     mote->counters.readings++;
-    const bool asked = mote->asked && mh_sensor_is_of(&mote->sensor, &sample, mote->asked_time);
-    if (mh_sensor_reports(&mote->sensor, &sample, mote->tracking)) {
-        report(mote, now, &sample, 0);
-    } else if (asked) {
-        report(mote, now, &sample, MH_MEASUREMENT_ASKED);
-    }
-    /* answered, or the sample asked for is so long overdue that nobody waits for it */
-    if (asked || mh_ticks_between(mote->asked_time, sample.time) > 2 * (int32_t)mote->config->sensor->interval) {
-        mote->asked = false;
-    }
+    report_soon(mote, now, &sample);
     set_alarm(mote, false);
     return MH_OK;
 }
@@ -235,6 +274,7 @@ static void time_jumped(struct mh_mote *mote, mh_tick now)
 {
     const struct mh_mote_config *config = mote->config;
     mote->asked = false;
+    mote->report_waits = false;
     if (config->sensor) {
         (void)mh_sensor_init(&mote->sensor, config->sensor);
     }
@@ -301,6 +341,9 @@ void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
     if (mote->protocol_alarm_set && !mh_tick_before(now, mote->protocol_alarm)) {
         mote->protocol_alarm_set = false;
         mote->config->protocol->timer(protocol_state(mote), now);
+    }
+    if (mote->report_waits && !mh_tick_before(now, mote->report_time)) {
+        report_waiting(mote, now);
     }
     struct mh_message message;
     if (mote->config->clock && mh_clock_timer(mote->config->clock_state, now, &message)) {

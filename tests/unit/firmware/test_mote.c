@@ -509,6 +509,79 @@ static void a_node_sleeps_between_beacons(void)
     TEST_ASSERT_EQUAL(3, port_saw.sleeps); /* only changes are told */
 }
 
+/* The wait of node `id` before it reports the sample of `instant`. */
+static mh_tick wait_of(mh_node_id id, mh_tick instant)
+{
+    config.id = id;
+    come_up(instant - T);
+    receive_beacon(instant - T + 1, false);
+    port_saw.transmitted = 0;
+    read(instant, 500, MH_OK);
+    TEST_ASSERT_EQUAL(0, port_saw.transmitted);
+    const mh_tick wait = port_saw.alarm - instant;
+    mh_mote_alarm(&mote, port_saw.alarm);
+    TEST_ASSERT_EQUAL(1, port_saw.transmitted);
+    TEST_ASSERT_EQUAL_INT32(instant, port_saw.message.as.report.time_ms);
+    return wait;
+}
+
+static void reports_of_one_instant_are_spread(void)
+{
+    enum { SPREAD = 400, PARTS = 4, NODES = 100 };
+    unsigned share[PARTS] = {0}, changed = 0;
+    sensor.report_spread = SPREAD;
+    for (mh_node_id id = NODE; id < NODE + NODES; id++) {
+        const mh_tick wait = wait_of(id, 5 * T);
+        TEST_ASSERT_TRUE(wait < SPREAD);
+        share[wait * PARTS / SPREAD]++;
+        changed += wait_of(id, 6 * T) != wait;
+    }
+    for (unsigned part = 0; part < PARTS; part++) { /* 25 expected, standard deviation 4.3 */
+        TEST_ASSERT_UINT_WITHIN(17, NODES / PARTS, share[part]);
+    }
+    TEST_ASSERT_TRUE(changed > NODES * 9 / 10); /* no node is always the last */
+}
+
+static void a_report_that_waits_is_sent_only_if_it_is_still_wanted(void)
+{
+    sensor.report_spread = 400;
+    come_up(0);
+    receive_beacon(1, false);
+    read(T, 101, MH_OK); /* worth a report while nothing is tracked */
+    const struct mh_message news = {.kind = MH_MESSAGE_BEACON,
+                                    .as.beacon = {.sender = HEAD, .sink = HEAD, .round = 2, .tracking = 1}};
+    const mh_tick due = port_saw.alarm;
+    receive(T, &news);
+    mh_mote_alarm(&mote, due);
+    TEST_ASSERT_EQUAL(0, port_saw.transmitted);
+    read(2 * T, 301, MH_OK); /* worth one, and asked for while it waits: one report, without the flag */
+    receive_request(2 * T, 2 * T, 10000000);
+    mh_mote_alarm(&mote, port_saw.alarm);
+    TEST_ASSERT_EQUAL(1, port_saw.transmitted);
+    TEST_ASSERT_EQUAL(0, mote.counters.reports_asked);
+    read(3 * T, 301, MH_OK); /* not worth one, asked for late: it waits too */
+    receive_request(3 * T + 1, 3 * T, 10000000);
+    TEST_ASSERT_EQUAL(1, port_saw.transmitted);
+    mh_mote_alarm(&mote, port_saw.alarm);
+    TEST_ASSERT_EQUAL(2, port_saw.transmitted);
+    TEST_ASSERT_EQUAL(1, mote.counters.reports_asked);
+}
+
+static void the_next_reading_does_not_overtake_a_report(void)
+{
+    sensor.report_spread = 400;
+    come_up(0);
+    receive_beacon(1, false);
+    read(T, 500, MH_OK);
+    const struct mh_reading other = {T, 800, 1}; /* of another target, at the same time */
+    TEST_ASSERT_EQUAL(MH_OK, mh_mote_reading(&mote, T, &other));
+    TEST_ASSERT_EQUAL(1, port_saw.transmitted);
+    TEST_ASSERT_EQUAL_INT32(500, port_saw.message.as.report.value_q20);
+    mh_mote_alarm(&mote, port_saw.alarm);
+    TEST_ASSERT_EQUAL(2, port_saw.transmitted);
+    TEST_ASSERT_EQUAL_INT32(800, port_saw.message.as.report.value_q20);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -527,6 +600,9 @@ int main(void)
     RUN_TEST(a_late_alarm_is_made_up_for);
     RUN_TEST(a_node_sleeps_between_beacons);
     RUN_TEST(the_fate_of_a_frame_goes_to_the_protocol);
+    RUN_TEST(reports_of_one_instant_are_spread);
+    RUN_TEST(a_report_that_waits_is_sent_only_if_it_is_still_wanted);
+    RUN_TEST(the_next_reading_does_not_overtake_a_report);
     port_exit(UNITY_END() > 0);
     return 0;
 }

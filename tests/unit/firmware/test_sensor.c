@@ -34,6 +34,9 @@ static void bad_configurations_are_refused(void)
     config.interval = 3600001u;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_sensor_init(&sensor, &config));
     config = good;
+    config.report_spread = T;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_sensor_init(&sensor, &config));
+    config = good;
     config.q20_per_count = 0;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_sensor_init(&sensor, &config));
     config = good;
