@@ -82,7 +82,7 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
     }
     mote_kit_complete(kit, scenario, 0);
     if (radio_config_of(scenario, scenario->radio.range_m).profile.contention) {
-        kit->sensor.report_spread = kit->head.window / 2; /* the other half is for the way */
+        kit->sensor.report_spread = kit->head.window / 4 * 3; /* the rest is for the way */
     }
     keep_time(kit, scenario);
     return 0;
