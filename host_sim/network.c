@@ -453,6 +453,7 @@ int network_count(struct network *network, struct simulation_counters *counters,
     const struct radio_counters *radio = &network->radio.counters;
     counters->frames_repeated = radio->frames_repeated;
     counters->frames_received = radio->frames_received;
+    counters->frames_duplicate = radio->frames_duplicate;
     memcpy(counters->frames_lost_by, radio->lost, sizeof counters->frames_lost_by);
     for (int reason = 0; LOSS_AT_RECEIVER(reason); reason++) {
         counters->frames_lost += radio->lost[reason];

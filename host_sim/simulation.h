@@ -49,11 +49,11 @@ struct simulation_counters {
     uint64_t samples; /* sampling instants while the source was present */
     uint64_t frames_sent[MH_MESSAGE_KINDS + 1]; /* by kind; the last: of none of the library's */
     uint64_t frames_received, frames_lost;      /* receptions; the last one is the sum over the reasons at a receiver */
-    uint64_t frames_lost_by[LOSS_REASONS], frames_repeated;
+    uint64_t frames_lost_by[LOSS_REASONS], frames_repeated, frames_duplicate;
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
     struct mh_protocol_counters protocol; /* summed over all motes */
-    struct energy_totals energy; /* all NaN where energy is not accounted for */
+    struct energy_totals energy;          /* all NaN where energy is not accounted for */
     /* of the motes' network time, once it has settled; NaN where clocks are ideal */
     double clock_error_median_ms, clock_error_p99_ms, clock_known_share;
 };

@@ -17,6 +17,7 @@
     X(FRAMES_SENT_LANDMARKS, "frames_sent_landmarks", c->frames_sent[MH_MESSAGE_LANDMARK], "of these landmarks, which say where the head is")      \
     X(FRAMES_SENT_SYNCS, "frames_sent_syncs", c->frames_sent[MH_MESSAGE_SYNC], "of these synchronisations of the clocks")                          \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
+    X(FRAMES_DUPLICATE, "frames_duplicate", c->frames_duplicate, "receptions of a frame that the mote had before; its radio keeps them to itself")  \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \
     X(FRAMES_REPEATED, "frames_repeated", c->frames_repeated, "of the frames sent those sent again for want of an acknowledgement")                    \
     X(FRAMES_LOST_COLLISION, "frames_lost_collision", c->frames_lost_by[LOSS_COLLISION], "of the receptions that failed, because of interference")     \

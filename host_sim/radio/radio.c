@@ -37,6 +37,7 @@ struct radio_frame {
     uint8_t cause;
     uint8_t length;
     bool refused; /* the radio was full */
+    bool taken;   /* by its one addressee, who has perhaps not been able to say so */
     uint8_t bytes[MH_FRAME_MAX];
 };
 
@@ -485,7 +486,7 @@ static enum loss_reason judge(const struct run *run, const struct flight *flight
     return channel_verdict(&radio->channel, &passage);
 }
 
-/* The end of a frame: who has received it is told. Returns whether the addressee has. */
+/* The end of a frame: who has received it, now for the first time, is told. Returns whether the addressee has. */
 static bool deliver(const struct run *run, const struct flight *flight, const struct meetings *meetings)
 {
     struct radio *radio = run->radio;
@@ -508,6 +509,11 @@ static bool deliver(const struct run *run, const struct flight *flight, const st
             radio->counters.lost[reason]++;
         }
     }
+    if (received > 0 && frame.taken) {
+        radio->counters.frames_duplicate++;
+        return true;
+    }
+    radio->frames[flight->frame].taken = received > 0 && flight->destination != RADIO_ALL;
     radio->counters.frames_received += received;
     if (received > 0 && run->sink->heard) {
         run->sink->heard(run->sink->context, run->now, frame.bytes, frame.length, radio->found, received);

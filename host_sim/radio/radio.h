@@ -8,7 +8,7 @@
  *
  * Each frame is judged so by itself: of two that overlap the stronger one is received if it is stronger by the capture ratio, whichever came
  * first. Transmissions that arrive more than 10 dB below the noise floor are not felt. A frame sent to one is acknowledged and repeated if the
- * acknowledgement does not come, also if it was the acknowledgement that was lost: then the addressee hears the frame twice.
+ * acknowledgement does not come, also if it was the acknowledgement that was lost: the addressee's radio knows a frame by its number and hands it over once.
  * Profile `ideal` knows none of this: a frame goes out at once and all in range hear it; one that is sent to one needs no
  * acknowledgement, and a radio's frames follow each other without a gap.
  *
@@ -71,9 +71,10 @@ struct radio_sink {
 };
 
 struct radio_counters {
-    uint64_t frames_sent;     /* transmissions, repetitions included */
-    uint64_t frames_repeated; /* of those */
-    uint64_t frames_received; /* once per receiver */
+    uint64_t frames_sent;      /* transmissions, repetitions included */
+    uint64_t frames_repeated;  /* of those */
+    uint64_t frames_received;  /* once per receiver */
+    uint64_t frames_duplicate; /* received again, and not handed over */
     uint64_t acks_sent, acks_lost;
     uint64_t lost[LOSS_REASONS];
 };

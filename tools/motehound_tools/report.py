@@ -33,6 +33,7 @@ MEANING = {
     "frames_sent_hellos": "of these hellos to the neighbours",
     "frames_sent_landmarks": "of these landmarks, which say where the head is",
     "frames_sent_syncs": "of these synchronisations of the clocks",
+    "frames_duplicate": "receptions of a frame that the mote had before; its radio keeps them to itself",
     "frames_repeated": "of the frames sent those sent again for want of an acknowledgement",
     "frames_lost": "receptions that failed",
     **{f"frames_lost_{reason}": said for reason, said in figures.LOST_AT_SENDER.items()},
