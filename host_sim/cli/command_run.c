@@ -138,6 +138,10 @@ static int read_options(struct command *command, struct run_options *options)
     if (options->pace > 0 && strncmp(options->bus_url, "memq:", 5) == 0) {
         return fail(error, COMMAND_ERROR_SIZE, "--pace: expected --bus URL too, found none that anyone could look on");
     }
+    if (options->workers + options->joining == 0 && (options->respawn || options->drop_share > 0)) {
+        return fail(error, COMMAND_ERROR_SIZE, "%s: expected --workers or --join too, found neither",
+                    options->respawn ? "--respawn" : "--drop-share");
+    }
     if (options->workers + options->joining > 0 && options->jobs > 1) {
         return fail(error, COMMAND_ERROR_SIZE, "--workers: expected one run at a time, found --jobs %llu",
                     (unsigned long long)options->jobs);

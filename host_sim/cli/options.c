@@ -25,7 +25,7 @@ enum option_kind option_next(struct option_reader *reader, size_t *rule, const c
         i++;
     }
     if (i == reader->rule_count) {
-        fail(error, error_size, "motehound: unknown option '%.100s', expected one of --help", word);
+        fail(error, error_size, "motehound: unknown option '%.100s', expected one that --help lists", word);
         return OPTION_ERROR;
     }
     const struct option_rule *found = &reader->rules[i];

@@ -513,7 +513,7 @@ static bool deliver(const struct run *run, const struct flight *flight, const st
         radio->counters.frames_duplicate++;
         return true;
     }
-    radio->frames[flight->frame].taken = received > 0 && flight->destination != RADIO_ALL;
+    radio->frames[flight->frame].taken |= received > 0 && flight->destination != RADIO_ALL;
     radio->counters.frames_received += received;
     if (received > 0 && run->sink->heard) {
         run->sink->heard(run->sink->context, run->now, frame.bytes, frame.length, radio->found, received);

@@ -91,6 +91,10 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
             "%s: radio.sensitivity_dbm: expected less than radio.power_dbm - radio.reference_loss_db = %g, found %g",
             name, loudest_dbm, sensitivity_dbm);
     }
+    if (scenario->energy.battery_j > 0 && strcmp(scenario->energy.profile, "none") == 0) {
+        return fail(error, error_size, "%s: energy.battery_j: expected 0 for energy.profile none, found %g", name,
+                    scenario->energy.battery_j);
+    }
     if (scenario->sweep.key[0] != '\0' &&
         (scenario_key_find(scenario->sweep.key) == NULL || strncmp(scenario->sweep.key, "sweep.", 6) == 0 ||
          scenario->sweep.values_count == 0)) {

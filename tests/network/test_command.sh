@@ -182,5 +182,6 @@ for signal in INT TERM HUP; do
     nothing stopped
 done
 refused '^--pace: expected a number' "$MOTEHOUND" run luo_exp1 --pace 0
+refused '^--respawn: expected --workers or --join' "$MOTEHOUND" run luo_exp1 --respawn
 refused '^--pace: expected --bus' "$MOTEHOUND" run luo_exp1 --pace 1
 conclude

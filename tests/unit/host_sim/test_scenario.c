@@ -145,6 +145,7 @@ static void keys_that_contradict_each_other_are_refused(void)
         {"network.sink_x_m", "81", "network.sink_y_m", "0"},
         {"network.sink_x_m", "80", "network.sink_y_m", "-1"},
         {"radio.propagation", "log_distance", "radio.power_dbm", "-50"},
+        {"energy.profile", "none", "energy.battery_j", "1"},
         {"tracker.window_s", "1", "sensor.interval_s", "1"},
         {"tracker.chi", "0", "tracker.name", "diffusion"},
         {"sweep.key", "network.node", "sweep.values", "1"},
