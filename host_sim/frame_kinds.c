@@ -17,14 +17,14 @@ void frame_kinds_learn(struct frame_kinds *kinds)
     *kinds = (struct frame_kinds){0};
     for (int kind = MH_MESSAGE_KINDS - 1; kind >= 0; kind--) {
         const struct mh_message message = {.kind = (enum mh_message_kind)kind};
-        if (mh_wire_encode(&message, frame, &length) == MH_OK) {
+        if (mh_wire_encode(mh_wire_all, &message, frame, &length) == MH_OK) {
             kinds->kinds[kind] = beginning(frame);
             bare = length; /* in the end of kind 0 */
         }
     }
     for (int envelope = MH_ENVELOPE_NONE + 1; envelope < MH_ENVELOPE_KINDS; envelope++) {
         const struct mh_message message = {.envelope = (enum mh_envelope_kind)envelope};
-        if (mh_wire_encode(&message, frame, &length) == MH_OK) {
+        if (mh_wire_encode(mh_wire_all, &message, frame, &length) == MH_OK) {
             kinds->envelopes[envelope] = beginning(frame);
             kinds->lengths[envelope] = length - bare;
         }

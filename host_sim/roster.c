@@ -40,7 +40,7 @@ static uint8_t sent_q8(const struct scenario *scenario)
     const struct radio_profile profile = radio_config_of(scenario, scenario->radio.range_m).profile;
     uint8_t frame[MH_FRAME_MAX];
     size_t length = 0;
-    (void)mh_wire_encode(&message, frame, &length);
+    (void)mh_wire_encode(mh_wire_all, &message, frame, &length);
     const size_t bytes = profile.preamble_bytes + profile.header_bytes + length;
     const double least_us = fmax(scenario->radio.delay_s * SIM_TIME_PER_S, 1) + radio_profile_air_us(&profile, bytes);
     const double sense_us = profile.contention ? profile.cca_us + profile.turnaround_us : 0;

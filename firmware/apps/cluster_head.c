@@ -60,7 +60,7 @@ static bool radio_has_received(mh_tick now, uint8_t *frame, size_t *length)
                                                .flags = MH_MEASUREMENT_HAS_INCREMENT};
     struct mh_message message = {.kind = MH_MESSAGE_REPORT};
     mh_report_from_measurement(&measurement, &message.as.report);
-    return mh_wire_encode(&message, frame, length) == MH_OK;
+    return mh_wire_encode(mh_protocol_direct.types, &message, frame, length) == MH_OK;
 }
 
 /* ---- what the mote asks of the board ---- */

@@ -39,7 +39,7 @@ static bool radio_has_received(mh_tick now, uint8_t *frame, size_t *length)
                                      : now == 3400 ? &beacon_tracking
                                      : now == 5500 ? &request
                                                    : NULL;
-    return heard && mh_wire_encode(heard, frame, length) == MH_OK;
+    return heard && mh_wire_encode(mh_protocol_collection.types, heard, frame, length) == MH_OK;
 }
 
 static int32_t adc_counts(mh_tick now)
@@ -56,7 +56,8 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
     (void)context;
     put_named("sends ", (int32_t)length);
     put_named(" bytes to ", (int32_t)destination);
-    if (mh_wire_decode(frame, length, &message) == MH_OK && message.kind == MH_MESSAGE_REPORT) {
+    if (mh_wire_decode(mh_protocol_collection.types, frame, length, &message) == MH_OK &&
+        message.kind == MH_MESSAGE_REPORT) {
         put_named(": sample of ", message.as.report.time_ms);
         put_named(" ms, increment ", (int32_t)(message.as.report.increment_q20 * 1000LL / MH_Q20_ONE));
         put_named(" mg/m2, flags ", message.as.report.flags);

@@ -293,7 +293,8 @@ static int add(void *state, uint32_t mote, const struct host_mote *what)
         if (!slot->network_clock) {
             return -1;
         }
-        slot->config.clock = what->sync;
+        slot->config.clock = &mh_clock_flooding;
+        slot->config.clock_config = what->sync;
         slot->config.clock_state = slot->network_clock;
     }
     if (what->head) {

@@ -59,9 +59,12 @@ static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *in
 
 static void tell_tracking(void *state, mh_tick now, bool tracking) { (void)state, (void)now, (void)tracking; }
 
+static mh_wire_types types[] = {&mh_wire_landmark, NULL};
+
 const struct mh_protocol chatter_protocol = {.name = "chatter",
                                              .state_size = sizeof(struct chatter),
                                              .config_size = sizeof(struct chatter_config),
+                                             .types = types,
                                              .init = init,
                                              .start = start,
                                              .message = message,

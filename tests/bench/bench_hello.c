@@ -16,7 +16,7 @@ void bench_prepare(unsigned step)
         .kind = MH_MESSAGE_HELLO,
         .as.hello = {.sender = 1000 + (int32_t)step, .x_mm = 7000, .y_mm = 8000 + 100 * (int32_t)step}};
     now = 1000 + (mh_tick)step;
-    if (mh_wire_encode(&hello, frame, &length) != MH_OK) {
+    if (mh_wire_encode(mh_protocol_geographic.types, &hello, frame, &length) != MH_OK) {
         length = 0;
     }
 }

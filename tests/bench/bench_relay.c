@@ -45,7 +45,7 @@ void bench_setup(void)
                                      .protocol_config = &collection,
                                      .protocol_state = &bench_state.collection};
     if (mh_mote_init(&bench_state.mote, &config, &port, NULL, 0) == MH_OK &&
-        mh_wire_encode(&beacon, frame, &length) == MH_OK) {
+        mh_wire_encode(mh_protocol_collection.types, &beacon, frame, &length) == MH_OK) {
         (void)mh_mote_frame(&bench_state.mote, 1, frame, length);
     }
 }
@@ -63,7 +63,7 @@ void bench_prepare(unsigned step)
                                                     .hops = 3}};
     now = 1000 * (mh_tick)step + 20;
     relayed_length = 0;
-    if (mh_wire_encode(&report, frame, &length) != MH_OK) {
+    if (mh_wire_encode(mh_protocol_collection.types, &report, frame, &length) != MH_OK) {
         length = 0;
     }
 }

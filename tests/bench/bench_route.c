@@ -20,7 +20,7 @@ void bench_prepare(unsigned step)
     mh_geographic_address(&report, 2, (int16_t)step, GEOGRAPHIC_SINK, &sink);
     now = 1000 * (mh_tick)step + 20;
     sent.length = 0;
-    if (mh_wire_encode(&report, frame, &length) != MH_OK) {
+    if (mh_wire_encode(mh_protocol_geographic.types, &report, frame, &length) != MH_OK) {
         length = 0;
     }
 }

@@ -27,7 +27,7 @@ void geographic_hear(struct geographic_state *state, mh_tick now, const struct m
 {
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
-    if (mh_wire_encode(message, frame, &length) == MH_OK) {
+    if (mh_wire_encode(mh_protocol_geographic.types, message, frame, &length) == MH_OK) {
         (void)mh_mote_frame(&state->mote, now, frame, length);
     }
 }

@@ -39,7 +39,7 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
     (void)context;
     (void)destination;
     struct mh_message message;
-    require(length <= MH_FRAME_MAX && mh_wire_decode(frame, length, &message) == MH_OK);
+    require(length <= MH_FRAME_MAX && mh_wire_decode(mh_wire_all, frame, length, &message) == MH_OK);
 }
 
 static void set_alarm(void *context, mh_tick time)
@@ -98,9 +98,9 @@ static void sound_frame(struct world *world, struct input *input)
     struct mh_message message = {.kind = (enum mh_message_kind)(choice % MH_MESSAGE_KINDS)};
     uint8_t frame[MH_FRAME_MAX];
     size_t length, bare;
-    mh_wire_encode(&message, frame, &bare);
+    mh_wire_encode(mh_wire_all, &message, frame, &bare);
     message.envelope = (enum mh_envelope_kind)(choice / MH_MESSAGE_KINDS % MH_ENVELOPE_KINDS);
-    mh_wire_encode(&message, frame, &length);
+    mh_wire_encode(mh_wire_all, &message, frame, &length);
     if (length > bare) {
         bytes(input, frame + 8, length - bare - 8);
     }
@@ -129,7 +129,7 @@ static void fresh_report(struct world *world, struct input *input)
     if (world->geographic) {
         mh_geographic_address(&message, byte(input), (int16_t)byte(input), byte(input) % 8, &measurement.place);
     }
-    mh_wire_encode(&message, frame, &length);
+    mh_wire_encode(mh_wire_all, &message, frame, &length);
     mh_mote_frame(&world->mote, world->now, frame, length);
 }
 
@@ -143,7 +143,7 @@ static void near_hello(struct world *world, struct input *input)
                                                     .sequence = byte(input) % 4}};
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
-    mh_wire_encode(&message, frame, &length);
+    mh_wire_encode(mh_wire_all, &message, frame, &length);
     mh_mote_frame(&world->mote, world->now, frame, length);
 }
 
@@ -234,7 +234,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .protocol_config = geographic ? (const void *)&protocol_config : &protocol_config.collection,
         .protocol_state = &protocol_state,
         .head_state = &head,
-        .clock = choice & 32 ? &clock_config : NULL,
+        .clock = choice & 32 ? &mh_clock_flooding : NULL,
+        .clock_config = &clock_config,
         .clock_state = &clock,
     };
     struct world world = {.geographic = geographic,

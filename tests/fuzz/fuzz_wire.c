@@ -10,10 +10,10 @@ static void take(const uint8_t *frame, size_t length)
     struct mh_message message;
     uint8_t again[MH_FRAME_MAX];
     size_t again_length;
-    if (mh_wire_decode(frame, length, &message) != MH_OK) {
+    if (mh_wire_decode(mh_wire_all, frame, length, &message) != MH_OK) {
         return;
     }
-    require(mh_wire_encode(&message, again, &again_length) == MH_OK);
+    require(mh_wire_encode(mh_wire_all, &message, again, &again_length) == MH_OK);
     require(again_length == length && memcmp(frame, again, length) == 0);
     if (message.kind == MH_MESSAGE_REPORT) {
         struct mh_measurement measurement;

@@ -19,7 +19,7 @@ static int save_frame(const char *folder, const char *name, const struct mh_mess
 {
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
-    return mh_wire_encode(message, frame, &length) == MH_OK ? save(folder, name, frame, length) : -1;
+    return mh_wire_encode(mh_wire_all, message, frame, &length) == MH_OK ? save(folder, name, frame, length) : -1;
 }
 
 /* Every second six reports around a source that walks, then the time goes on: a track. The protocol `geographic` wants its neighbours first,

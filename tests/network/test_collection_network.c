@@ -142,7 +142,7 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
 {
     const unsigned sender = index_of(context);
     struct mh_message message;
-    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &message));
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &message));
     net.sent[message.kind]++;
     if (message.kind == MH_MESSAGE_REPORT) {
         const unsigned origin = (unsigned)message.as.report.origin;

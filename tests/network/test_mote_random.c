@@ -34,7 +34,8 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
     (void)destination;
     sent[(struct mh_mote *)context - motes]++;
     TEST_ASSERT_LESS_OR_EQUAL(MH_FRAME_MAX, length);
-    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &message)); /* whatever came in, only sound frames go out */
+    TEST_ASSERT_EQUAL(
+        MH_OK, mh_wire_decode(mh_wire_all, frame, length, &message)); /* whatever came in, only sound frames go out */
     memcpy(pool[pool_next].bytes, frame, length);
     pool[pool_next].length = length;
     pool_next = (pool_next + 1) % POOL;
@@ -161,9 +162,8 @@ static void run(const struct mh_protocol *protocol, const void *protocol_config,
             .protocol_config = protocol_config,
             .protocol_state = protocol == &mh_protocol_direct ? (void *)&directs[i] : (void *)&collections[i],
             .head_state = i == HEAD ? &head : NULL,
-            .clock = !with_clocks ? NULL
-                     : i == HEAD  ? &root
-                                  : &other,
+            .clock = with_clocks ? &mh_clock_flooding : NULL,
+            .clock_config = i == HEAD ? &root : &other,
             .clock_state = &clocks[i]};
         configs[i] = config;
         TEST_ASSERT_EQUAL(MH_OK, mh_mote_init(&motes[i], &configs[i], &port, &motes[i], now));

@@ -106,7 +106,7 @@ static void hear_frame(void *context, double time_s, mh_node_id sender, mh_node_
     mix(&destination, sizeof destination);
     mix(bytes, length);
     struct mh_message message;
-    if (mh_wire_decode(bytes, length, &message) == MH_OK) {
+    if (mh_wire_decode(mh_wire_all, bytes, length, &message) == MH_OK) {
         told.frames[message.kind]++;
     } else {
         told.unsound++;

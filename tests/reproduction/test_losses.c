@@ -24,7 +24,7 @@ static void hear_frame(void *context, double time_s, mh_node_id sender, mh_node_
 {
     (void)context, (void)time_s, (void)sender, (void)destination;
     struct mh_message message;
-    TEST_ASSERT_EQUAL_INT(MH_OK, mh_wire_decode(bytes, length, &message));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_wire_decode(mh_wire_all, bytes, length, &message));
     if (message.kind != MH_MESSAGE_REPORT) {
         return;
     }

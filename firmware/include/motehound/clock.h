@@ -133,4 +133,19 @@ mh_tick mh_clock_network(const struct mh_clock *clock, mh_tick local, uint8_t *f
 /* The first local tick whose network time is `network` or later: the exact inverse. */
 mh_tick mh_clock_local(const struct mh_clock *clock, mh_tick network);
 
+/* These functions as a mote calls them, so that only the image of a mote that keeps the network's time holds them. */
+struct mh_clock_functions {
+    mh_wire_types *types; /* the sync message */
+    enum mh_status (*init)(struct mh_clock *clock, const struct mh_clock_config *config, mh_node_id id, mh_tick now);
+    bool (*message)(struct mh_clock *clock, mh_tick now, const mh_sync_t *message);
+    bool (*due)(const struct mh_clock *clock, mh_tick *time);
+    bool (*timer)(struct mh_clock *clock, mh_tick now, struct mh_message *message);
+    void (*other_frame)(struct mh_clock *clock);
+    bool (*sent)(struct mh_clock *clock, mh_tick now, enum mh_sent outcome);
+    mh_tick (*network)(const struct mh_clock *clock, mh_tick local, uint8_t *fraction);
+    mh_tick (*local)(const struct mh_clock *clock, mh_tick network);
+};
+
+extern const struct mh_clock_functions mh_clock_flooding;
+
 #endif

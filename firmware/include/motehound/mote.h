@@ -38,10 +38,11 @@ struct mh_mote_config {
     const struct mh_head_config *head;     /* NULL on a mote that does not compute */
     const struct mh_protocol *protocol;
     const void *protocol_config;
-    void *protocol_state;                /* protocol->state_size bytes */
-    struct mh_head *head_state;          /* with head */
-    const struct mh_clock_config *clock; /* NULL: the mote's own time is the network's */
-    struct mh_clock *clock_state;        /* with clock */
+    void *protocol_state;                   /* protocol->state_size bytes */
+    struct mh_head *head_state;             /* with head */
+    const struct mh_clock_functions *clock; /* &mh_clock_flooding; NULL: the mote's own time is the network's */
+    const struct mh_clock_config *clock_config;
+    struct mh_clock *clock_state; /* with clock */
 };
 
 struct mh_mote_counters {

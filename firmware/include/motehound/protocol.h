@@ -63,15 +63,16 @@ struct mh_protocol_node {
 
 struct mh_protocol {
     const char *name;
-    size_t state_size;  /* bytes of the state that init() fills */
-    size_t config_size; /* bytes of the configuration that init() reads */
+    size_t state_size;    /* bytes of the state that init() fills */
+    size_t config_size;   /* bytes of the configuration that init() reads */
+    mh_wire_types *types; /* all that it sends and takes */
 
     /* `config` and `node` outlive the state. Errors: MH_ERR_ARGUMENT (a configuration value outside the range its header
      * gives). */
     enum mh_status (*init)(void *state, const void *config, const struct mh_protocol_node *node);
     /* The mote is up. Called before any of the following. */
     void (*start)(void *state, mh_tick now);
-    /* A sound message came in, sent to this mote or to all. */
+    /* A sound message of one of `types` came in, sent to this mote or to all. */
     void (*message)(void *state, mh_tick now, const struct mh_message *message);
     /* What became of the oldest message sent of which this has not been told. May be NULL. */
     void (*sent)(void *state, mh_tick now, enum mh_sent outcome);

@@ -49,13 +49,35 @@ struct mh_message {
     mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */
 };
 
-/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (unknown kind or envelope). */
-enum mh_status mh_wire_encode(const struct mh_message *message, uint8_t *frame, size_t *length);
+/* How one type of message, or one envelope, is laid out in a frame. Who speaks it refers to it: an image holds the code of no others. */
+struct mh_wire_type {
+    enum mh_message_kind kind;                              /* MH_MESSAGE_KINDS: it is an envelope */
+    enum mh_envelope_kind envelope;                         /* MH_ENVELOPE_NONE: it is a message */
+    uint64_t (*fingerprint)(const __lcm_hash_ptr *parents); /* parents: NULL */
+    /* -> bytes[0 .. room). Returns the length. */
+    int (*encode)(const struct mh_message *message, uint8_t *bytes, int room);
+    /* bytes[0 .. length) -> message. Returns how many bytes it took; negative if they are too few or a field is one that no sender
+     * writes: MH_BROADCAST as sender, more than MH_HOPS_MAX hops (MH_ROUTE_HOPS_MAX in an envelope), a place outside
+     * +- 1e9 mm, a negative radius. */
+    int (*decode)(struct mh_message *message, const uint8_t *bytes, int length);
+};
+
+extern const struct mh_wire_type mh_wire_beacon, mh_wire_report, mh_wire_request, mh_wire_hello, mh_wire_landmark,
+    mh_wire_sync, mh_wire_route, mh_wire_face;
+
+/* What somebody speaks: types in any order, then NULL. */
+typedef const struct mh_wire_type *const mh_wire_types;
+
+/* Every type there is: for who looks on. */
+extern mh_wire_types mh_wire_all[];
+
+/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (the kind or the envelope is not
+ * among `types`). */
+enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *message, uint8_t *frame, size_t *length);
 
 /* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields
- * that no sender writes: MH_BROADCAST as sender, more than MH_HOPS_MAX hops (MH_ROUTE_HOPS_MAX in an envelope), a place outside
- * +- 1e9 mm, a negative radius), MH_ERR_UNKNOWN (sound, but of a type this build does not know). */
-enum mh_status mh_wire_decode(const uint8_t *frame, size_t length, struct mh_message *message);
+ * that no sender writes), MH_ERR_UNKNOWN (sound as far as can be told, but of a type that is not among `types`). */
+enum mh_status mh_wire_decode(mh_wire_types *types, const uint8_t *frame, size_t length, struct mh_message *message);
 
 /* ITU-T CRC-16 as IEEE 802.15.4 uses it: polynomial x^16 + x^12 + x^5 + 1, reflected, initial value 0. */
 uint16_t mh_wire_fcs(const uint8_t *bytes, size_t length);

@@ -15,12 +15,12 @@ static bool knows_time(const struct mh_mote *mote)
 
 static mh_tick network_time(const struct mh_mote *mote, mh_tick own)
 {
-    return mote->config->clock ? mh_clock_network(mote->config->clock_state, own, NULL) : own;
+    return mote->config->clock ? mote->config->clock->network(mote->config->clock_state, own, NULL) : own;
 }
 
 static mh_tick own_time(const struct mh_mote *mote, mh_tick network)
 {
-    return mote->config->clock ? mh_clock_local(mote->config->clock_state, network) : network;
+    return mote->config->clock ? mote->config->clock->local(mote->config->clock_state, network) : network;
 }
 
 /* ---- the alarm ---- */
@@ -47,7 +47,7 @@ static void set_alarm(struct mh_mote *mote, bool used_up)
     if (mote->report_waits) {
         want(&alarm, mote->report_time);
     }
-    if (mote->config->clock && mh_clock_due(mote->config->clock_state, &time)) {
+    if (mote->config->clock && mote->config->clock->due(mote->config->clock_state, &time)) {
         want(&alarm, time);
     }
     if (mote->config->head && knows_time(mote)) {
@@ -120,11 +120,12 @@ static void report_soon(struct mh_mote *mote, mh_tick now, const struct mh_sampl
     }
 }
 
-static void transmit(struct mh_mote *mote, mh_node_id destination, const struct mh_message *message)
+static void transmit(struct mh_mote *mote, mh_wire_types *types, mh_node_id destination,
+                     const struct mh_message *message)
 {
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
-    if (mh_wire_encode(message, frame, &length) == MH_OK) {
+    if (mh_wire_encode(types, message, frame, &length) == MH_OK) {
         mote->counters.frames_sent++;
         mote->port->transmit(mote->port_context, destination, frame, length);
     }
@@ -136,9 +137,9 @@ static void protocol_send(void *context, mh_node_id destination, const struct mh
 {
     struct mh_mote *mote = context;
     if (mote->config->clock) {
-        mh_clock_other_frame(mote->config->clock_state);
+        mote->config->clock->other_frame(mote->config->clock_state);
     }
-    transmit(mote, destination, message);
+    transmit(mote, mote->config->protocol->types, destination, message);
 }
 
 static void protocol_set_timer(void *context, mh_tick time)
@@ -220,7 +221,7 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
     mote->node = node;
     enum mh_status status = MH_OK;
     if (config->clock) {
-        status = mh_clock_init(config->clock_state, config->clock, config->id, now);
+        status = config->clock->init(config->clock_state, config->clock_config, config->id, now);
     }
     if (status == MH_OK && config->sensor) {
         status = mh_sensor_init(&mote->sensor, config->sensor);
@@ -287,15 +288,26 @@ static void time_jumped(struct mh_mote *mote, mh_tick now)
     }
 }
 
+/* What neither the protocol nor the clock speaks is nothing to this mote. */
+static enum mh_status decode(const struct mh_mote *mote, const uint8_t *frame, size_t length,
+                             struct mh_message *message)
+{
+    const enum mh_status status = mh_wire_decode(mote->config->protocol->types, frame, length, message);
+    return status == MH_ERR_UNKNOWN && mote->config->clock
+               ? mh_wire_decode(mote->config->clock->types, frame, length, message)
+               : status;
+}
+
 enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length)
 {
     struct mh_message message;
-    const enum mh_status status = mh_wire_decode(frame, length, &message);
+    const enum mh_status status = decode(mote, frame, length, &message);
     if (status == MH_OK) {
         mote->counters.frames_received++;
         if (message.kind != MH_MESSAGE_SYNC) {
             mote->config->protocol->message(protocol_state(mote), now, &message);
-        } else if (mote->config->clock && mh_clock_message(mote->config->clock_state, now, &message.as.sync)) {
+        } else if (mote->config->clock &&
+                   mote->config->clock->message(mote->config->clock_state, now, &message.as.sync)) {
             time_jumped(mote, now);
         }
         set_alarm(mote, false);
@@ -309,7 +321,7 @@ enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *f
 
 void mh_mote_sent(struct mh_mote *mote, mh_tick now, enum mh_sent outcome)
 {
-    const bool of_clock = mote->config->clock && mh_clock_sent(mote->config->clock_state, now, outcome);
+    const bool of_clock = mote->config->clock && mote->config->clock->sent(mote->config->clock_state, now, outcome);
     if (!of_clock && mote->config->protocol->sent) {
         mote->config->protocol->sent(protocol_state(mote), now, outcome);
     }
@@ -346,8 +358,8 @@ void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
         report_waiting(mote, now);
     }
     struct mh_message message;
-    if (mote->config->clock && mh_clock_timer(mote->config->clock_state, now, &message)) {
-        transmit(mote, MH_BROADCAST, &message);
+    if (mote->config->clock && mote->config->clock->timer(mote->config->clock_state, now, &message)) {
+        transmit(mote, mote->config->clock->types, MH_BROADCAST, &message);
     }
     if (mote->config->head && knows_time(mote) &&
         !mh_tick_before(network_time(mote, now), mh_head_deadline(mote->config->head_state))) {

@@ -422,3 +422,17 @@ mh_tick mh_clock_local(const struct mh_clock *clock, mh_tick network)
     }
     return local;
 }
+
+static mh_wire_types types[] = {&mh_wire_sync, NULL};
+
+const struct mh_clock_functions mh_clock_flooding = {
+    .types = types,
+    .init = mh_clock_init,
+    .message = mh_clock_message,
+    .due = mh_clock_due,
+    .timer = mh_clock_timer,
+    .other_frame = mh_clock_other_frame,
+    .sent = mh_clock_sent,
+    .network = mh_clock_network,
+    .local = mh_clock_local,
+};

@@ -395,10 +395,13 @@ static void count(const void *state, struct mh_protocol_counters *counters)
     }
 }
 
+static mh_wire_types types[] = {&mh_wire_beacon, &mh_wire_report, &mh_wire_request, NULL};
+
 const struct mh_protocol mh_protocol_collection = {
     .name = "collection",
     .state_size = sizeof(struct mh_collection),
     .config_size = sizeof(struct mh_collection_config),
+    .types = types,
     .init = init,
     .start = start,
     .message = message,

@@ -136,10 +136,13 @@ static void tell_tracking(void *state, mh_tick now, bool tracking)
     }
 }
 
+static mh_wire_types types[] = {&mh_wire_beacon, &mh_wire_report, &mh_wire_request, NULL};
+
 const struct mh_protocol mh_protocol_direct = {
     .name = "direct",
     .state_size = sizeof(struct mh_direct),
     .config_size = sizeof(struct mh_direct_config),
+    .types = types,
     .init = init,
     .start = start,
     .message = message,

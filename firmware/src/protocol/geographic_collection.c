@@ -273,10 +273,14 @@ static void count(const void *state, struct mh_protocol_counters *counters)
     mh_link_count(&g->link, counters);
 }
 
+static mh_wire_types types[] = {
+    &mh_wire_landmark, &mh_wire_report, &mh_wire_request, &mh_wire_hello, &mh_wire_route, &mh_wire_face, NULL};
+
 const struct mh_protocol mh_protocol_geographic = {
     .name = "geographic",
     .state_size = sizeof(struct mh_geographic_collection),
     .config_size = sizeof(struct mh_geographic_collection_config),
+    .types = types,
     .init = init,
     .start = start,
     .message = message,

@@ -30,7 +30,7 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
     (void)context;
     port_saw.transmitted++;
     port_saw.destination = destination;
-    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(frame, length, &port_saw.message));
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &port_saw.message));
 }
 
 static void set_alarm(void *context, mh_tick time)
@@ -151,7 +151,7 @@ static void receive(mh_tick now, const struct mh_message *message)
 {
     uint8_t frame[MH_FRAME_MAX];
     size_t length;
-    TEST_ASSERT_EQUAL(MH_OK, mh_wire_encode(message, frame, &length));
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_encode(mh_wire_all, message, frame, &length));
     TEST_ASSERT_EQUAL(MH_OK, mh_mote_frame(&mote, now, frame, length));
 }
 
@@ -261,7 +261,8 @@ static const struct mh_clock_config keeps_time = {.period = 15000, .wait = 1500,
 static void a_node_speaks_the_networks_time(void)
 {
     const mh_tick ahead = 1000000;
-    config.clock = &keeps_time;
+    config.clock = &mh_clock_flooding;
+    config.clock_config = &keeps_time;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_mote_init(&mote, &config, &port, NULL, 0)); /* no room for its state */
     config.clock_state = &clock;
     come_up(ahead);
@@ -290,7 +291,8 @@ static void a_node_speaks_the_networks_time(void)
 static void a_head_keeps_the_networks_instants(void)
 {
     const mh_tick ahead = 777;
-    config.clock = &keeps_time;
+    config.clock = &mh_clock_flooding;
+    config.clock_config = &keeps_time;
     config.clock_state = &clock;
     come_up_as_head(ahead);
     mh_mote_alarm(&mote, ahead + 5 * T);

@@ -13,7 +13,7 @@ static void encode(enum mh_message_kind kind, enum mh_envelope_kind envelope)
 {
     struct mh_message message = {.kind = kind, .envelope = envelope};
     message.header.route.sender = 7;
-    TEST_ASSERT_EQUAL_INT(MH_OK, mh_wire_encode(&message, frame, &length));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_wire_encode(mh_wire_all, &message, frame, &length));
 }
 
 static void every_message_is_known_in_every_envelope(void)
