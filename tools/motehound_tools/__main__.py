@@ -1,4 +1,4 @@
-"""python -m motehound_tools report | sweep | results | picture | bound | export | view"""
+"""python -m motehound_tools report | sweep | results | faults | picture | bound | export | view"""
 
 from __future__ import annotations
 
@@ -39,6 +39,13 @@ def parser() -> argparse.ArgumentParser:
         "--markdown", type=Path, help="the page to write (docs/results.md; with --quick out/results-quick.md)"
     )
 
+    faults = commands.add_parser("faults", help="run the scenarios of faults and write the table of faults")
+    faults.add_argument("--runs", type=int, default=20)
+    faults.add_argument(
+        "--out", type=Path, default=Path("out/faults"), help="where the runs go; finished ones are kept"
+    )
+    faults.add_argument("--markdown", type=Path, default=Path("docs/faults.md"), help="the page to write")
+
     picture = commands.add_parser("picture", help="draw the README's picture of a tracked source")
     picture.add_argument("--out", type=Path, default=Path("out/picture"), help="where the runs go")
     picture.add_argument("--image", type=Path, default=Path("docs/images/tracked_source.svg"))
@@ -58,7 +65,7 @@ def parser() -> argparse.ArgumentParser:
     shown.add_argument("--bus", metavar="URL", help="such as udpm://239.255.76.67:7667?ttl=0")
     view.add_argument("--port", type=int, default=5006, help="0: any that is free (%(default)s)")
 
-    for one in (sweep, results, picture):
+    for one in (sweep, results, faults, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
     return top
 
@@ -104,6 +111,11 @@ def perform(arguments: argparse.Namespace) -> None:
         page = arguments.markdown or Path("out/results-quick.md" if arguments.quick else "docs/results.md")
         results.write(command.find(arguments.motehound), arguments.out, page, 5 if arguments.quick else 50)
         print(page)
+    elif arguments.command == "faults":
+        from . import command, faults
+
+        faults.write(command.find(arguments.motehound), arguments.out, arguments.markdown, arguments.runs)
+        print(arguments.markdown)
     elif arguments.command == "picture":
         from . import command, picture
 

@@ -10,7 +10,7 @@
  *
  * Instants without measurements near the source, and instants that the caller left out, are real time alike: the answer is dead reckoning from the
  * last fit, its covariance grows by an independent turn an interval. When measurements come back the gap becomes one straight segment of the path, and
- * the fit goes on; after MH_DIFFUSION_COAST intervals, or MH_DIFFUSION_SILENCE instants in succession without a significant increment, the track ends
+ * the fit goes on; after MH_DIFFUSION_COAST intervals, or MH_DIFFUSION_SILENCE instants in succession without a significant increment near it, the track ends
  * and the next detection starts a new one. A track also begins again (MH_ESTIMATE_STARTED) when the fit has failed to explain the increments for
  * three instants, or they have crowded elsewhere four times in succession.
  *
@@ -18,7 +18,8 @@
  *
  * The covariance is that of the fit times the mean square of its own residuals: the noise assumed below is generous, which the fit needs, and the
  * covariance would be too large by that. Residuals beyond that noise come from failing sensors or a wrong model and do not average out: they count
- * fourfold, and the covariance then also spans the way to where the increments crowd. A fit that fails, which needs numbers near the ends of float, ends the track. */
+ * fourfold, and the covariance then also spans the way to where the increments crowd. From the second instant in succession without a significant increment
+ * near the source on, it also grows as if the source had left. A fit that fails, which needs numbers near the ends of float, ends the track. */
 #ifndef MOTEHOUND_DIFFUSION_H
 #define MOTEHOUND_DIFFUSION_H
 
@@ -47,7 +48,7 @@ struct mh_diffusion {
     bool stepped;             /* time is valid */
     bool tracking;            /* fit holds a solution */
     int since;                /* instants since the (re)start or the last gap */
-    int silent;               /* instants in succession without a significant increment */
+    int silent;               /* instants in succession without a significant increment near the source */
     int doubtful;             /* instants in succession with a bad fit */
     int astray;               /* instants in succession with the cluster of increments elsewhere */
     struct mh_vec2 cluster;   /* where the significant increments crowded last */

@@ -395,7 +395,7 @@ static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct m
 }
 
 /* What the residuals say of the covariance. Where they are larger than the noise assumed, the source may as well be where the increments crowd:
- * with the share of the misfit that noise does not explain as probability. */
+ * with the share of the misfit that noise does not explain as probability. Where no increment is significant any more, it may have left. */
 static void learn_misfit(struct mh_diffusion *track)
 {
     const struct mh_trail_fit *fit = &track->fit;
@@ -404,9 +404,11 @@ static void learn_misfit(struct mh_diffusion *track)
     const struct mh_vec2 place = fit->knots[fit->knot_count - 1].place;
     const struct mh_vec2 off = {track->cluster.x - place.x, track->cluster.y - place.y};
     const mh_real doubt = track->level > 1.0f ? 1.0f - 1.0f / track->level : 0.0f;
-    track->ambiguity.xx = doubt * off.x * off.x;
+    const mh_real unheard = (mh_real)(track->silent > 1 ? track->silent - 1 : 0);
+    const mh_real left = mh_squared(unheard * mh_seconds_between(0, fit->model.interval) * track->config.speed_mps);
+    track->ambiguity.xx = doubt * off.x * off.x + left;
     track->ambiguity.xy = doubt * off.x * off.y;
-    track->ambiguity.yy = doubt * off.y * off.y;
+    track->ambiguity.yy = doubt * off.y * off.y + left;
 }
 
 /* Follow the density of the nodes that answered, and choose whom to ask next. */
@@ -469,6 +471,16 @@ static bool is_heard(const struct mh_diffusion *track, const struct instant *now
     return false;
 }
 
+/* True if a significant increment stands near the newest knot: the source, if it is there, goes on releasing. */
+static bool is_answered(struct mh_diffusion *track, const struct instant *now)
+{
+    const struct mh_vec2 place = newest(&track->fit)->place;
+    const struct vicinity vicinity = {{place, place}, mh_squared(0.5f * track->config.reach_m)};
+    struct ranking strong;
+    rank_strong(track, now, 1, &vicinity, &strong);
+    return strong.count > 0;
+}
+
 /* Look for a source. */
 static enum mh_status detect(struct mh_diffusion *track, const struct instant *now)
 {
@@ -513,8 +525,9 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         flags = MH_ESTIMATE_STARTED;
     } else if (is_heard(track, &now)) {
         bool restarted = false;
-        track->silent = strongest(track, &now) != NULL ? 0 : track->silent + 1;
-        track->tracking = follow(track, &now, &restarted) == MH_OK && track->silent <= MH_DIFFUSION_SILENCE;
+        track->tracking = follow(track, &now, &restarted) == MH_OK;
+        track->silent = restarted || is_answered(track, &now) ? 0 : track->silent + 1;
+        track->tracking = track->tracking && track->silent <= MH_DIFFUSION_SILENCE;
         flags = restarted ? MH_ESTIMATE_STARTED : 0;
     } else {
         track->used = 0;
