@@ -10,9 +10,10 @@
  *
  * Instants without measurements near the source, and instants that the caller left out, are real time alike: the answer is dead reckoning from the
  * last fit, its covariance grows by an independent turn an interval. When measurements come back the gap becomes one straight segment of the path, and
- * the fit goes on; after MH_DIFFUSION_COAST intervals, or MH_DIFFUSION_SILENCE instants in succession without a significant increment near it, the track ends
- * and the next detection starts a new one. A track also begins again (MH_ESTIMATE_STARTED) when the fit has failed to explain the increments for
- * three instants, or they have crowded elsewhere four times in succession.
+ * the fit goes on. The track ends after MH_DIFFUSION_COAST intervals without measurements or without a significant increment near it, and after
+ * MH_DIFFUSION_SILENCE instants in succession without a significant increment anywhere; the next detection starts a new one. It begins again
+ * (MH_ESTIMATE_STARTED) where the increments crowd, when the fit has failed to explain them for three instants, when they have crowded elsewhere four times
+ * in succession, or when none near the track has been significant for MH_DIFFUSION_SILENCE instants.
  *
  * The release rate may change along the path, as fast as it has been seen to change lately.
  *
@@ -48,7 +49,8 @@ struct mh_diffusion {
     bool stepped;             /* time is valid */
     bool tracking;            /* fit holds a solution */
     int since;                /* instants since the (re)start or the last gap */
-    int silent;               /* instants in succession without a significant increment near the source */
+    int silent;               /* instants in succession without a significant increment */
+    int unanswered;           /* instants in succession without one near the source */
     int doubtful;             /* instants in succession with a bad fit */
     int astray;               /* instants in succession with the cluster of increments elsewhere */
     struct mh_vec2 cluster;   /* where the significant increments crowded last */

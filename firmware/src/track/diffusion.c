@@ -99,6 +99,7 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     track->stepped = false;
     track->tracking = false;
     track->silent = 0;
+    track->unanswered = 0;
     track->level = 1.0f;
     track->rate_change2 = 0.0f;
     track->usual_misfit = 0.0f;
@@ -328,7 +329,8 @@ static bool is_lost(struct mh_diffusion *track, const struct cluster *cluster)
         track->astray = astray ? track->astray + 1 : 0;
         track->cluster = cluster->centre;
     }
-    return cluster->found && (track->doubtful >= 3 || bad > 24.0f * normal || track->astray >= 4);
+    return cluster->found && (track->doubtful >= 3 || bad > 24.0f * normal || track->astray >= 4 ||
+                              track->unanswered >= MH_DIFFUSION_SILENCE);
 }
 
 /* One instant of a track, with measurements. After a gap a knot one interval back lets the source have turned meanwhile, and what it released
@@ -404,7 +406,7 @@ static void learn_misfit(struct mh_diffusion *track)
     const struct mh_vec2 place = fit->knots[fit->knot_count - 1].place;
     const struct mh_vec2 off = {track->cluster.x - place.x, track->cluster.y - place.y};
     const mh_real doubt = track->level > 1.0f ? 1.0f - 1.0f / track->level : 0.0f;
-    const mh_real unheard = (mh_real)(track->silent > 1 ? track->silent - 1 : 0);
+    const mh_real unheard = (mh_real)(track->unanswered > 1 ? track->unanswered - 1 : 0);
     const mh_real left = mh_squared(unheard * mh_seconds_between(0, fit->model.interval) * track->config.speed_mps);
     track->ambiguity.xx = doubt * off.x * off.x + left;
     track->ambiguity.xy = doubt * off.x * off.y;
@@ -521,13 +523,16 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     uint8_t flags = 0;
     if (!track->tracking) {
         track->silent = 0;
+        track->unanswered = 0;
         track->tracking = detect(track, &now) == MH_OK;
         flags = MH_ESTIMATE_STARTED;
     } else if (is_heard(track, &now)) {
         bool restarted = false;
         track->tracking = follow(track, &now, &restarted) == MH_OK;
-        track->silent = restarted || is_answered(track, &now) ? 0 : track->silent + 1;
-        track->tracking = track->tracking && track->silent <= MH_DIFFUSION_SILENCE;
+        track->silent = strongest(track, &now) != NULL ? 0 : track->silent + 1;
+        track->unanswered = restarted || is_answered(track, &now) ? 0 : track->unanswered + 1;
+        track->tracking =
+            track->tracking && track->silent <= MH_DIFFUSION_SILENCE && track->unanswered <= MH_DIFFUSION_COAST;
         flags = restarted ? MH_ESTIMATE_STARTED : 0;
     } else {
         track->used = 0;
