@@ -1,11 +1,13 @@
 #include "hosts/host.h"
 
+#include "engine/memory.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CACHE_LINE = 64, PREFETCH_AHEAD = 6, MICROSECONDS_PER_TICK = SIM_TIME_PER_S / MH_TICKS_PER_S };
+enum { PREFETCH_AHEAD = 6, MICROSECONDS_PER_TICK = SIM_TIME_PER_S / MH_TICKS_PER_S };
 
 /* Aligned for whatever a tracker or a protocol keeps. */
 union any {
@@ -394,12 +396,11 @@ int host_in_process(struct host *host, uint32_t mote_count, const uint32_t *orde
     state->order = order;
     state->protocol_size = protocol->state_size;
     state->slot_size = (sizeof(struct slot) + protocol->state_size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
-    void *slots;
-    if (posix_memalign(&slots, CACHE_LINE, mote_count * state->slot_size)) {
+    state->slots = memory_array(mote_count, state->slot_size);
+    if (!state->slots) {
         free(state);
         return -1;
     }
-    state->slots = memset(slots, 0, mote_count * state->slot_size);
     *host = (struct host){state, add, next, run, count, destroy};
     return 0;
 }
