@@ -5,6 +5,7 @@
 #include "world/sensor.h"
 #include "world/traffic.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -19,7 +20,8 @@ struct run {
     double *concentrations;
     int32_t *counts;
     struct faults faults;
-    enum power *power; /* of each node; NULL where the faults leave all on */
+    enum power *power;    /* of each node; NULL where the faults leave all on */
+    sim_time next_switch; /* of them; SIM_TIME_NEVER: none */
     sim_time interval;
     uint64_t instants, next; /* in all, and the one to come */
     sim_time end;
@@ -47,10 +49,11 @@ static void report(void *context, double now_s, double time_s, const struct mh_e
     }
 }
 
-/* Nodes die and restart at instants of the world. */
-static void switch_nodes(struct run *run, double time_s)
+/* Nodes die and restart. What begins now has begun: asked half a microsecond later, so that rounding does not count. */
+static int switch_nodes(struct run *run)
 {
-    for (uint32_t i = 0; run->power && i < run->roster.deployment.count; i++) {
+    const double time_s = network_time_s(&run->network) + 0.5 / SIM_TIME_PER_S;
+    for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
         const enum power before = run->power[i];
         if (before == POWER_DEAD) {
             continue;
@@ -62,11 +65,15 @@ static void switch_nodes(struct run *run, double time_s)
             network_power(&run->network, i, before != POWER_ON);
         }
     }
+    const double next_s = fmin(faults_next_change_s(&run->faults, FAULT_DEAD, time_s),
+                               faults_next_change_s(&run->faults, FAULT_REBOOT, time_s)) *
+                          SIM_TIME_PER_S;
+    run->next_switch = next_s < (double)run->end ? (sim_time)llround(next_s) : SIM_TIME_NEVER;
+    return network_schedule(&run->network, run->next_switch);
 }
 
-static int sample(void *context)
+static int sample(struct run *run)
 {
-    struct run *run = context;
     const uint64_t instant = run->next++;
     const double time_s = network_time_s(&run->network);
     if (run->observer->truth) {
@@ -82,7 +89,6 @@ static int sample(void *context)
         run->concentrations[i] = field_concentration(&run->field, node->x_m, node->y_m);
     }
     sensors_read(&run->sensors, instant, run->concentrations, run->counts);
-    switch_nodes(run, time_s);
     for (size_t i = 0; i < deployment->count; i++) {
         if ((!run->power || run->power[i] == POWER_ON) && !sensors_lost(&run->sensors, instant, time_s, i)) {
             network_reading(&run->network, (uint32_t)i, run->counts[i], 0);
@@ -92,26 +98,45 @@ static int sample(void *context)
 }
 
 /* A source of synthetic traffic takes its sample, which it reports whatever it is. */
-static int sample_one(void *context)
+static int sample_one(struct run *run)
 {
-    struct run *run = context;
     const uint32_t node = traffic_take(&run->traffic);
-    switch_nodes(run, network_time_s(&run->network));
     if (!run->power || run->power[node] == POWER_ON) {
         network_reading(&run->network, node, 0, 0);
     }
     return network_schedule(&run->network, traffic_next(&run->traffic));
 }
 
+/* Whatever is due. Each of them asks for the next of its kind, so nothing is done twice where several are due at once. */
+static int instant_of_source(void *context)
+{
+    struct run *run = context;
+    if (run->network.now >= run->next_switch && switch_nodes(run)) {
+        return -1;
+    }
+    return run->network.now == run->next * run->interval ? sample(run) : 0;
+}
+
+static int instant_of_traffic(void *context)
+{
+    struct run *run = context;
+    if (run->network.now >= run->next_switch && switch_nodes(run)) {
+        return -1;
+    }
+    return run->network.now == traffic_next(&run->traffic) ? sample_one(run) : 0;
+}
+
 static int make_world(struct run *run, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
     const size_t nodes = run->roster.deployment.count;
     faults_make(&run->faults, scenario, seed);
+    run->next_switch = SIM_TIME_NEVER;
     if (faults_include(&run->faults, FAULT_DEAD) || faults_include(&run->faults, FAULT_REBOOT)) {
         run->power = calloc(nodes, sizeof *run->power);
         if (!run->power) {
             return -1;
         }
+        run->next_switch = 0;
     }
     run->interval = (sim_time)run->roster.kit.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     if (scenario->source.path == PATH_NONE) {
@@ -140,14 +165,17 @@ static int bring_up(struct run *run, const struct host_provider *hosts, const st
                                           .seed = seed,
                                           .observer = run->observer,
                                           .context = run,
-                                          .instant = has_source ? sample : sample_one,
+                                          .instant = has_source ? instant_of_source : instant_of_traffic,
                                           .report = report};
     snprintf(error, error_size, "out of memory");
     if (roster_make(&run->roster, scenario, seed, error, error_size) ||
         make_world(run, scenario, seed, error, error_size) || network_make(&run->network, &config, error, error_size)) {
         return -1;
     }
-    return network_schedule(&run->network, has_source ? 0 : traffic_next(&run->traffic));
+    return network_schedule(&run->network, has_source ? 0 : traffic_next(&run->traffic)) ||
+                   (run->power && network_schedule(&run->network, 0))
+               ? -1
+               : 0;
 }
 
 static void tear_down(struct run *run)

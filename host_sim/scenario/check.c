@@ -2,6 +2,7 @@
 #include "radio/profile.h"
 #include "scenario/keys.h"
 #include "scenario/text.h"
+#include "world/faults.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,6 +31,25 @@ static double duration(const struct scenario *scenario)
     case PATH_STILL:
     case PATH_NONE:
         return scenario->source.duration_s;
+    }
+    return 0;
+}
+
+static int check_faults(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const double every_s = scenario->faults.every_s;
+    struct faults faults;
+    if (every_s > 0 && every_s < scenario->sensor.interval_s) {
+        return fail(error, error_size, "%s: faults.every_s: expected 0 or at least sensor.interval_s = %g, found %g",
+                    name, scenario->sensor.interval_s, every_s);
+    }
+    faults_make(&faults, scenario, 0);
+    for (int i = 0; i < FAULTS; i++) {
+        if (every_s > 0 && faults_include(&faults, (enum fault)i) && faults.windows[i].from_s >= every_s) {
+            return fail(error, error_size,
+                        "%s: faults.every_s: expected 0 or more than %g, when one of the faults begins, found %g", name,
+                        faults.windows[i].from_s, every_s);
+        }
     }
     return 0;
 }
@@ -94,6 +114,9 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
     if (scenario->energy.battery_j > 0 && strcmp(scenario->energy.profile, "none") == 0) {
         return fail(error, error_size, "%s: energy.battery_j: expected 0 for energy.profile none, found %g", name,
                     scenario->energy.battery_j);
+    }
+    if (check_faults(scenario, name, error, error_size) != 0) {
+        return -1;
     }
     if (scenario->sweep.key[0] != '\0' &&
         (scenario_key_find(scenario->sweep.key) == NULL || strncmp(scenario->sweep.key, "sweep.", 6) == 0 ||

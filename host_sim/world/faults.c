@@ -61,6 +61,18 @@ bool faults_hit(const struct faults *faults, enum fault fault, double time_s, ui
     return random_uniform(faults->stream, draw << 32 | mote) < faults->windows[fault].share;
 }
 
+double faults_next_change_s(const struct faults *faults, enum fault fault, double time_s)
+{
+    const double begin_s = periods(faults, time_s) * faults->every_s;
+    const double changes_s[] = {begin_s + faults->windows[fault].from_s, begin_s + faults->windows[fault].until_s,
+                                faults->every_s > 0 ? begin_s + faults->every_s : HUGE_VAL};
+    double next_s = HUGE_VAL;
+    for (size_t i = 0; i < sizeof changes_s / sizeof changes_s[0] && faults_include(faults, fault); i++) {
+        next_s = changes_s[i] > time_s && changes_s[i] < next_s ? changes_s[i] : next_s;
+    }
+    return next_s;
+}
+
 bool faults_part(const struct faults *faults, double time_s, double ax_m, double ay_m, double bx_m, double by_m)
 {
     const bool a_beyond = ax_m * faults->line_x + ay_m * faults->line_y > faults->line_at;

@@ -43,6 +43,9 @@ bool faults_are_on(const struct faults *faults, enum fault fault, double time_s)
 /* It is on at `time_s` and hits `mote`: each with the fault's share as probability, drawn anew for every fault and every period. */
 bool faults_hit(const struct faults *faults, enum fault fault, double time_s, uint32_t mote);
 
+/* The first time after `time_s` at which it may begin, end, or hit others; HUGE_VAL: none. */
+double faults_next_change_s(const struct faults *faults, enum fault fault, double time_s);
+
 /* The partition lies between two places at `time_s`. */
 bool faults_part(const struct faults *faults, double time_s, double ax_m, double ay_m, double bx_m, double by_m);
 

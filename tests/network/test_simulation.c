@@ -242,6 +242,21 @@ static void outage_leaves_a_gap_and_no_more(void)
     }
 }
 
+/* All nodes restart between two samples: nobody knows the way to the head, until its next beacon. */
+static void nodes_restart_between_samples(void)
+{
+    struct scenario scenario = e1();
+    told = (struct told){0};
+    run(&scenario, 1);
+    const uint32_t without = counters.motes.reports_no_route;
+    scenario.faults.reboot.share = 1;
+    scenario.faults.reboot.from_s = 44.3;
+    scenario.faults.reboot.for_s = 0.4;
+    run(&scenario, 1);
+    TEST_ASSERT_EQUAL_UINT(1280 * 97, counters.motes.readings);
+    TEST_ASSERT_TRUE(counters.motes.reports_no_route > without + 20);
+}
+
 static void a_run_is_quick(void)
 {
     const struct scenario scenario = e1();
@@ -467,6 +482,7 @@ int main(void)
     RUN_TEST(what_is_told_agrees_with_what_is_counted);
     RUN_TEST(luo_with_lossy_radio);
     RUN_TEST(outage_leaves_a_gap_and_no_more);
+    RUN_TEST(nodes_restart_between_samples);
     RUN_TEST(a_run_is_quick);
     RUN_TEST(stops_when_told);
     RUN_TEST(estimates_are_of_the_instants_that_are_told);

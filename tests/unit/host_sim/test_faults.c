@@ -157,6 +157,28 @@ static void faults_come_again_and_hit_others(void)
     TEST_ASSERT_TRUE(faults_include(&faults, FAULT_STUCK) && !faults_include(&faults, FAULT_JAM));
 }
 
+/* 30, 50, 100, 130, 150, 200 ...: it begins, it ends, and with the next period other motes are drawn. */
+static void changes_are_found_one_after_the_other(void)
+{
+    struct scenario scenario = e1();
+    struct faults faults;
+    scenario.faults.every_s = 100;
+    scenario.faults.reboot.share = 0.5;
+    scenario.faults.reboot.from_s = 30;
+    scenario.faults.reboot.for_s = 20;
+    faults_make(&faults, &scenario, 7);
+    const double expected[] = {30, 50, 100, 130, 150, 200};
+    double time_s = 0;
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+        time_s = faults_next_change_s(&faults, FAULT_REBOOT, time_s);
+        TEST_ASSERT_TRUE(fabs(time_s - expected[i]) < 1e-9);
+    }
+    TEST_ASSERT_TRUE(isinf(faults_next_change_s(&faults, FAULT_DEAD, 0)));
+    scenario.faults.every_s = 0;
+    faults_make(&faults, &scenario, 7);
+    TEST_ASSERT_TRUE(isinf(faults_next_change_s(&faults, FAULT_REBOOT, 50)));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -165,5 +187,6 @@ int main(void)
     RUN_TEST(saturating_sensors_read_no_more);
     RUN_TEST(spiking_sensors_spike_now_and_then);
     RUN_TEST(faults_come_again_and_hit_others);
+    RUN_TEST(changes_are_found_one_after_the_other);
     port_exit(UNITY_END() > 0);
 }

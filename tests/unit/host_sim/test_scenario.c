@@ -146,6 +146,7 @@ static void keys_that_contradict_each_other_are_refused(void)
         {"network.sink_x_m", "80", "network.sink_y_m", "-1"},
         {"radio.propagation", "log_distance", "radio.power_dbm", "-50"},
         {"energy.profile", "none", "energy.battery_j", "1"},
+        {"faults.every_s", "0.5", "sensor.interval_s", "1"},
         {"tracker.window_s", "1", "sensor.interval_s", "1"},
         {"tracker.chi", "0", "tracker.name", "diffusion"},
         {"sweep.key", "network.node", "sweep.values", "1"},
@@ -162,6 +163,11 @@ static void keys_that_contradict_each_other_are_refused(void)
     }
     tearDown();
     setUp();
+    scenario.faults.dead.share = 0.1;
+    scenario.faults.dead.from_s = scenario.faults.every_s = 20;
+    TEST_ASSERT_EQUAL_INT(-1, scenario_check(&scenario, "a.yaml", error, sizeof error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "faults.every_s: expected 0 or more than 20"), error);
+    scenario.faults.every_s = 0;
     /* E1 lasts 96.3706 s */
     TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "sensor.outage_start_s", "76.37", error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "sensor.outage_s", "20", error, sizeof error));
