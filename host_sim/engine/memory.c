@@ -1,4 +1,3 @@
-#define _DEFAULT_SOURCE /* madvise */
 #include "engine/memory.h"
 
 #include <stdbool.h>
