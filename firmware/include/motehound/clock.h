@@ -83,10 +83,10 @@ struct mh_clock {
     bool again;        /* the message to send is the second of its round */
     mh_tick next_time; /* when to send again if no new round comes */
     uint8_t number;    /* of the last own message */
-    bool on_its_way;   /* it has been handed to the radio, which has not told its fate */
+    bool on_its_way;   /* it has been handed to the radio, which has not told its fate; for a period at most */
     uint16_t others;   /* other frames of which that is true ... */
     uint16_t before;   /* ... and of these, handed over before it */
-    bool sent;         /* it went out, at ... */
+    bool sent;         /* it went out, at (or, on its way, was handed over at) ... */
     mh_tick sent_time;
 
     struct mh_clock_moment {

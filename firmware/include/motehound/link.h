@@ -17,6 +17,8 @@
 
 #include "motehound/protocol.h"
 
+#define MH_LINK_PATIENCE 10000 /* ticks: a radio silent so long about a frame has forgotten it, which counts as busy */
+
 struct mh_link_config {
     uint8_t attempts; /* of a message, 1 to 100, beside those that the radio makes on its own */
     mh_tick backoff; /* before the second attempt, ticks, 1 to 1,000; up to twice as long before the third, and so on */
@@ -33,6 +35,7 @@ struct mh_link {
     struct mh_link_message queue[MH_LINK_QUEUE_MAX];
     uint8_t first, count;  /* of the queue, a ring */
     bool in_air;           /* the first message ... */
+    mh_tick due_time;      /* ... since this time ... */
     mh_node_id to;         /* ... to this neighbour ... */
     uint8_t ahead, behind; /* ... and so many broadcasts before it and after it whose outcome is not known */
     bool waits;            /* the first message, for retry_time */

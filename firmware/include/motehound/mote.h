@@ -97,7 +97,7 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
 enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length);
 
 /* What became of the oldest frame transmitted of which this has not been told, at the time its last bit or its acknowledgement went
- * over the air. */
+ * over the air. Of frames from before mh_mote_init nothing may be told. A call too many is taken for the next frame's. */
 void mh_mote_sent(struct mh_mote *mote, mh_tick now, enum mh_sent outcome);
 
 /* The time asked for with set_alarm has come. Early and repeated calls do no harm. A late call is made up for: each call

@@ -349,9 +349,12 @@ bool mh_clock_timer(struct mh_clock *clock, mh_tick now, struct mh_message *mess
     }
     const struct mh_clock_config *config = clock->config;
     keep_up(clock, now);
-    if (clock->on_its_way) {
+    if (clock->on_its_way && mh_ticks_between(clock->sent_time, now) < (int32_t)config->period) {
         clock->send_time = now + config->wait;
         return false;
+    }
+    if (clock->on_its_way) { /* the radio has forgotten it, and whatever was handed over before */
+        clock->others = 0;
     }
     if (clock->again) {
         clock->again = false;
@@ -376,6 +379,7 @@ bool mh_clock_timer(struct mh_clock *clock, mh_tick now, struct mh_message *mess
     sync->hops = clock->hops;
     sync->number = ++clock->number;
     clock->sent = false;
+    clock->sent_time = now;
     clock->on_its_way = true;
     clock->before = clock->others;
     return true;

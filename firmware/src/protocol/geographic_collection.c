@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-#define HURRIED_HELLOS 3 /* after the first, at an eighth, a quarter and half of the period */
+#define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
+#define HURRIED_HELLOS 3             /* after the first, at an eighth, a quarter and half of the period */
 
 static const struct mh_protocol *const collection = &mh_protocol_collection;
 
@@ -141,7 +142,7 @@ static void say_hello(struct mh_geographic_collection *g, mh_tick now)
     mh_neighbours_age(&g->neighbours, now);
     const mh_tick period =
         g->hellos < HURRIED_HELLOS ? g->config->hello_period >> (HURRIED_HELLOS - g->hellos) : g->config->hello_period;
-    g->hellos = g->hellos < UINT16_MAX ? (uint16_t)(g->hellos + 1) : HURRIED_HELLOS;
+    g->hellos = g->hellos < UINT16_MAX ? (uint16_t)(g->hellos + 1) : HELLOS_AGAIN;
     /* neighbours that have spoken at the same time do not do so again */
     g->hello_time = now + period - mh_spread(g->node->id, g->hellos, period / 4);
 }
@@ -245,7 +246,8 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     }
     struct mh_message report = {.kind = MH_MESSAGE_REPORT};
     mh_report_from_measurement(measurement, &report.as.report);
-    g->sequence = g->published ? (uint16_t)(g->sequence + 1) : (uint16_t)now; /* not what it was before a restart */
+    /* The network's time, unlike the mote's own, goes on over a restart, so the numbers are not those from before it. */
+    g->sequence = g->published ? (uint16_t)(g->sequence + 1) : (uint16_t)measurement->time;
     g->published = true;
     mh_geographic_address(&report, g->node->id, (int16_t)g->sequence, g->collection.sink, &g->sink_place);
     const enum mh_status status = mh_link_take(&g->link, &report);

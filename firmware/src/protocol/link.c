@@ -114,10 +114,15 @@ enum mh_status mh_link_take(struct mh_link *link, const struct mh_message *messa
 
 const struct mh_message *mh_link_due(struct mh_link *link, mh_tick now)
 {
+    if (link->in_air && mh_ticks_between(link->due_time, now) > MH_LINK_PATIENCE) {
+        link->ahead = link->behind = 0;
+        (void)mh_link_sent(link, now, MH_SENT_BUSY);
+    }
     if (link->count == 0 || link->in_air || (link->waits && mh_tick_before(now, link->retry_time))) {
         return NULL;
     }
     link->waits = false;
+    link->due_time = now;
     return &link->queue[link->first].message;
 }
 

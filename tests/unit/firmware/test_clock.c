@@ -252,6 +252,21 @@ static void test_fates_of_other_frames(void)
     TEST_ASSERT_EQUAL_UINT8(0, message.as.sync.stamped);
 }
 
+/* A radio that was reset tells nothing any more: after a period the clock goes on. */
+static void test_a_fate_that_is_never_told(void)
+{
+    struct mh_message message;
+    mh_tick due;
+    hear_rounds(1000, 2);
+    mh_clock_other_frame(&clock);
+    TEST_ASSERT_TRUE(mh_clock_due(&clock, &due) && mh_clock_timer(&clock, due, &message));
+    const mh_tick begin = due;
+    while (mh_clock_due(&clock, &due) && due - begin < 2 * PERIOD && !mh_clock_timer(&clock, due, &message)) {}
+    TEST_ASSERT_TRUE(due - begin >= PERIOD && due - begin < PERIOD + 2 * WAIT);
+    TEST_ASSERT_EQUAL_UINT8(0, message.as.sync.stamped);
+    TEST_ASSERT_TRUE(mh_clock_sent(&clock, due + 10, MH_SENT_OK));
+}
+
 /* What comes from farther away and has been derived from this mote's own time teaches it nothing. */
 static void test_errors_do_not_run_in_circles(void)
 {
@@ -352,6 +367,7 @@ int main(void)
     RUN_TEST(test_a_restarted_neighbour_does_no_harm);
     RUN_TEST(test_rounds_are_relayed);
     RUN_TEST(test_fates_of_other_frames);
+    RUN_TEST(test_a_fate_that_is_never_told);
     RUN_TEST(test_errors_do_not_run_in_circles);
     RUN_TEST(test_another_root_after_silence);
     RUN_TEST(test_the_root);

@@ -216,6 +216,34 @@ static void others_reports_are_relayed_once(void)
     TEST_ASSERT_EQUAL(0, saw.delivered);
 }
 
+/* Its own time begins anew with the mote, the network's does not. */
+static void a_restarted_node_does_not_repeat_its_numbers(void)
+{
+    int16_t sequences[2];
+    for (unsigned boot = 0; boot < 2; boot++) {
+        come_up(NODE, false);
+        hear_hello(5, 11000);
+        hear_landmark(1, false, 0);
+        const struct mh_measurement measurement = {.node = NODE, .time = 70000 + (mh_tick)10000 * boot};
+        TEST_ASSERT_EQUAL(MH_OK, geographic->publish(&state, 500, &measurement));
+        sequences[boot] = saw.message.header.route.sequence;
+    }
+    TEST_ASSERT_TRUE((uint16_t)(sequences[1] - sequences[0]) > MH_LINK_SEEN_MAX);
+}
+
+/* Neighbours see the low byte alone; a gap in it is hellos missed. */
+static void numbers_of_hellos_have_no_gap(void)
+{
+    state.hellos = UINT16_MAX;
+    while (saw.hellos < 2) {
+        const unsigned before = saw.hellos;
+        geographic->timer(&state, saw.timer);
+        if (saw.hellos > before) {
+            TEST_ASSERT_EQUAL_UINT8(before == 0 ? UINT8_MAX : 0, (uint8_t)saw.message.as.hello.sequence);
+        }
+    }
+}
+
 static void nobody_near_is_counted(void)
 {
     const struct mh_message message = travelling(SINK, 77);
@@ -276,6 +304,8 @@ int main(void)
     RUN_TEST(a_report_goes_to_the_neighbour_nearest_to_the_sink);
     RUN_TEST(a_neighbour_that_has_died_is_left_out);
     RUN_TEST(others_reports_are_relayed_once);
+    RUN_TEST(a_restarted_node_does_not_repeat_its_numbers);
+    RUN_TEST(numbers_of_hellos_have_no_gap);
     RUN_TEST(nobody_near_is_counted);
     RUN_TEST(a_sink_takes_each_report_once);
     RUN_TEST(the_rest_is_collection);

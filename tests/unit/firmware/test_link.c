@@ -91,6 +91,22 @@ static void one_message_is_in_the_air_at_a_time_in_the_order_taken(void)
     TEST_ASSERT_NULL(mh_link_due(&link, 2));
 }
 
+/* A radio that was reset tells nothing any more. */
+static void a_fate_that_is_never_told_does_not_block(void)
+{
+    broadcast();
+    take(1);
+    pump(100);
+    TEST_ASSERT_NULL(mh_link_due(&link, 100 + MH_LINK_PATIENCE));
+    TEST_ASSERT_NULL(mh_link_due(&link, 101 + MH_LINK_PATIENCE)); /* after a wait */
+    mh_tick again;
+    TEST_ASSERT_TRUE(mh_link_alarm(&link, &again));
+    pump(again);
+    TEST_ASSERT_EQUAL(3, saw.sent);
+    TEST_ASSERT_EQUAL_INT16(1, saw.sequence);
+    TEST_ASSERT_EQUAL(MH_LINK_TAKEN, mh_link_sent(&link, again, MH_SENT_OK));
+}
+
 /* The outcomes come in the order of sending, those of broadcasts among them. */
 static void outcomes_of_broadcasts_are_told_apart(void)
 {
@@ -230,6 +246,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(bad_configurations_are_refused);
     RUN_TEST(one_message_is_in_the_air_at_a_time_in_the_order_taken);
+    RUN_TEST(a_fate_that_is_never_told_does_not_block);
     RUN_TEST(outcomes_of_broadcasts_are_told_apart);
     RUN_TEST(waits_double_and_attempts_end);
     RUN_TEST(an_overflow_is_counted_and_may_come_again);
