@@ -55,6 +55,8 @@ struct mh_collection {
     } seen[MH_COLLECTION_SEEN];
     uint8_t seen_count, seen_next;
     uint8_t refused;          /* unicasts to the parent in a row that were not acknowledged */
+    uint8_t in_air;           /* frames whose outcome is not known ... */
+    uint16_t broadcasts;      /* ... and which of them are broadcasts: a bit each, the oldest lowest */
     uint16_t lost[MH_LOSSES]; /* reports, by reason; saturates */
 };
 

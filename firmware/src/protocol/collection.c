@@ -4,8 +4,9 @@
 
 #include <string.h>
 
-#define REFUSALS_MAX 3 /* in a row, of a parent */
-#define NEWS_SHARE 8   /* a path shorter by this part of its hops is worth another relay within a round */
+#define IN_AIR_KNOWN 16 /* frames in the air of which is known whether they are broadcasts */
+#define REFUSALS_MAX 3  /* in a row, of a parent */
+#define NEWS_SHARE 8    /* a path shorter by this part of its hops is worth another relay within a round */
 
 static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a : b; }
 
@@ -28,8 +29,12 @@ static void arm(struct mh_collection *c)
     c->node->port->set_timer(c->node->context, next);
 }
 
-static void send(const struct mh_collection *c, mh_node_id destination, const struct mh_message *message)
+static void send(struct mh_collection *c, mh_node_id destination, const struct mh_message *message)
 {
+    if (destination == MH_BROADCAST && c->in_air < IN_AIR_KNOWN) {
+        c->broadcasts = (uint16_t)(c->broadcasts | 1u << c->in_air);
+    }
+    c->in_air = (uint8_t)(c->in_air + (c->in_air < UINT8_MAX));
     c->node->port->send(c->node->context, destination, message);
 }
 
@@ -42,7 +47,7 @@ static void drop(struct mh_collection *c, enum mh_loss reason)
 
 /* ---- the tree ---- */
 
-static void send_beacon(const struct mh_collection *c, mh_node_id sink)
+static void send_beacon(struct mh_collection *c, mh_node_id sink)
 {
     const struct mh_message message = {.kind = MH_MESSAGE_BEACON,
                                        .as.beacon = {.sender = (int32_t)c->node->id,
@@ -176,12 +181,15 @@ static void hear_report(struct mh_collection *c, mh_tick now, const mh_report_t 
     send(c, c->parent, &relayed);
 }
 
-/* Broadcasts are not acknowledged, so only the parent can refuse. */
+/* Broadcasts are not acknowledged: only the parent can refuse, and that they are out does not speak for it. */
 static void sent(void *state, mh_tick now, enum mh_sent outcome)
 {
     struct mh_collection *c = state;
+    const bool of_broadcast = (c->broadcasts & 1u) != 0;
+    c->broadcasts >>= 1;
+    c->in_air = (uint8_t)(c->in_air - (c->in_air > 0));
     if (outcome == MH_SENT_OK) {
-        c->refused = 0;
+        c->refused = of_broadcast ? c->refused : 0;
     } else if (outcome == MH_SENT_NO_ACK) {
         drop(c, MH_LOSS_NOT_ACKNOWLEDGED);
         if (++c->refused == REFUSALS_MAX) {
@@ -261,7 +269,7 @@ static void hear_request(struct mh_collection *c, mh_tick now, const mh_request_
     }
 }
 
-static void send_request(const struct mh_collection *c, const mh_request_t *request)
+static void send_request(struct mh_collection *c, const mh_request_t *request)
 {
     struct mh_message message = {.kind = MH_MESSAGE_REQUEST, .as.request = *request};
     message.as.request.sender = (int32_t)c->node->id;
@@ -348,7 +356,7 @@ static void timer(void *state, mh_tick now)
 
 static enum mh_status publish(void *state, mh_tick now, const struct mh_measurement *measurement)
 {
-    const struct mh_collection *c = state;
+    struct mh_collection *c = state;
     (void)now;
     if (!c->joined || c->node->is_head) {
         return MH_ERR_NO_ROUTE;
@@ -361,7 +369,7 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
 
 static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time)
 {
-    const struct mh_collection *c = state;
+    struct mh_collection *c = state;
     (void)now;
     if (!c->node->is_head) {
         return MH_ERR_ARGUMENT;

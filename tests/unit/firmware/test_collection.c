@@ -300,6 +300,27 @@ static void a_parent_that_is_gone_is_replaced(void)
     TEST_ASSERT_EQUAL_UINT8(4, state.hops);
 }
 
+/* That broadcasts go out says nothing about the parent. */
+static void broadcasts_do_not_excuse_a_parent(void)
+{
+    const struct mh_measurement measurement = {.node = 10};
+    hear_beacon(5, 1, 7, 3);
+    collection->timer(&state, saw.timer); /* relays the beacon */
+    collection->sent(&state, 200, MH_SENT_OK);
+    for (int32_t i = 0; i < 3; i++) {
+        TEST_ASSERT_FALSE(state.stale);
+        TEST_ASSERT_EQUAL(MH_OK, collection->publish(&state, 300, &measurement));
+        collection->sent(&state, 310, MH_SENT_NO_ACK);
+        const unsigned before = saw.sent;
+        hear_request(1, 1000 * i, -20000);
+        collection->timer(&state, state.request_time);
+        if (saw.sent > before && saw.message.kind == MH_MESSAGE_REQUEST) {
+            collection->sent(&state, 320, MH_SENT_OK);
+        }
+    }
+    TEST_ASSERT_TRUE(state.stale);
+}
+
 static void two_nodes_that_take_each_other_for_parents_notice(void)
 {
     hear_beacon(5, 1, 7, 3);
@@ -401,6 +422,7 @@ int main(void)
     RUN_TEST(a_node_without_a_path_asks_and_is_answered);
     RUN_TEST(reports_go_up_and_never_in_circles);
     RUN_TEST(a_parent_that_is_gone_is_replaced);
+    RUN_TEST(broadcasts_do_not_excuse_a_parent);
     RUN_TEST(two_nodes_that_take_each_other_for_parents_notice);
     RUN_TEST(a_request_is_relayed_once_and_only_where_it_helps);
     RUN_TEST(the_broadcast_that_covers_the_place_is_the_last);
