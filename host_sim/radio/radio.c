@@ -301,13 +301,8 @@ static void enter_ack(const struct run *run, uint32_t index, enum ack_state stat
 
 /* ---- who is in reach ---- */
 
-static int ascending(const void *a, const void *b)
-{
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
-/* Who receives `sender` when nothing disturbs: into radio->found, ascending. Returns their number. */
+/* Who receives `sender` when nothing disturbs: into radio->found, in the order of the places, which is
+ * that in which the motes' memory lies. Returns their number. */
 static uint32_t look_up_receivers(const struct radio *radio, uint32_t sender)
 {
     const size_t near = places_within(&radio->places, sender, radio->reach_m, radio->found);
@@ -319,7 +314,6 @@ static uint32_t look_up_receivers(const struct radio *radio, uint32_t sender)
             radio->found[count++] = index;
         }
     }
-    qsort(radio->found, count, sizeof *radio->found, ascending);
     return count;
 }
 

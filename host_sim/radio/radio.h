@@ -60,7 +60,7 @@ struct radio_sink {
     /* The first bit of a frame, at each of its transmissions. */
     void (*on_air)(void *context, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *bytes,
                    size_t length);
-    /* The last bit has arrived at all these, at least one, ascending. */
+    /* The last bit has arrived at all these, at least one, each once, in the order of radio_order. */
     void (*heard)(void *context, sim_time time, const uint8_t *bytes, size_t length, const uint32_t *receivers,
                   uint32_t count);
     /* What became of a frame: once for each, a sender's in the order of sending, but for those of a radio that was switched off. */
