@@ -11,7 +11,7 @@ static const struct mh_sensor_config sensor = {/* 10 bits for 0 to 5 g/m2 */
                                                .counts_max = 1023,
                                                .interval = 1000,
                                                .threshold = MH_Q20(0.2f)};
-static const struct mh_collection_config routing = {30000, 100, 40, 3, 15000};
+static const struct mh_collection_config routing = {30000, 100, 40, 3, 15000, 5, 20};
 
 static struct mh_collection route;
 static const struct mh_mote_config config = {.id = 17,

@@ -14,8 +14,9 @@
  * is nearer to the centre than the last relay, the request ends.
  *
  * Several sinks divide the field: each node belongs to the one with the fewest hops. Every mote relays, so every radio
- * listens all the time. Acknowledgements are the radio's business: a unicast frame that it loses is lost, and counted. A node whose parent has
- * not acknowledged three in a row, or sends it reports, asks its neighbours for another path of the same round or a newer one. */
+ * listens all the time. Acknowledgements are the radio's business: a report that it could not deliver is sent again after a while, to whoever is the
+ * parent then, and lost, and counted, after the last attempt. A node whose parent has not acknowledged three in a row, or sends
+ * it reports, asks its neighbours for another path of the same round or a newer one. */
 #ifndef MOTEHOUND_COLLECTION_H
 #define MOTEHOUND_COLLECTION_H
 
@@ -29,40 +30,55 @@ struct mh_collection_config {
     uint8_t suppress_after; /* copies heard that make a relay needless, >= 1 */
     /* nominal radio range, 1 to 1e9: scales the waits of requests, and tells whether one covers its radius */
     uint32_t range_mm;
+    uint8_t attempts; /* of a report, at each node, 1 to 100, beside those that the radio makes on its own */
+    mh_tick backoff; /* before the second attempt, ticks, 1 to 1,000; up to twice as long before the third, and so on */
 };
 
-#define MH_COLLECTION_SEEN 3 /* requests remembered, so that none is relayed twice */
+/* A report that the parent may not have. */
+struct mh_collection_kept {
+    struct mh_measurement measurement;
+    uint8_t hops;
+    bool in_air : 1;
+    unsigned attempts : 7; /* made; 0: the place is free */
+    mh_tick due;           /* when it is to be sent again; in the air the number of its frame, below 256 */
+};
 
 /* State of one mote; read it, but leave writing to the protocol. */
 struct mh_collection {
     const struct mh_collection_config *config;
     const struct mh_protocol_node *node;
     mh_node_id sink;
-    mh_node_id parent;                /* next hop towards the sink */
-    uint16_t round;                   /* newest heard (or, at the sink, begun) */
-    uint8_t hops;                     /* to the sink; 0 there */
-    bool joined;                      /* sink, parent, round and hops are known */
-    bool stale;                       /* ... but two rounds have not come, or the parent is lost */
-    bool tracking;                    /* the sink follows a track */
-    bool beacon_waits, request_waits; /* to be relayed at ... */
+    mh_node_id parent;                        /* next hop towards the sink */
+    uint16_t round;                           /* newest heard (or, at the sink, begun) */
+    uint8_t hops;                             /* to the sink; 0 there */
+    bool joined : 1;                          /* sink, parent, round and hops are known */
+    bool stale : 1;                           /* ... but two rounds have not come, or the parent is lost */
+    bool tracking : 1;                        /* the sink follows a track */
+    bool beacon_waits : 1, request_waits : 1; /* to be relayed at ... */
     mh_tick beacon_time, request_time;
     mh_tick upkeep_time;                   /* the sink's next round; elsewhere when to ask the neighbours for a path */
     uint8_t beacon_copies, request_copies; /* heard meanwhile */
-    mh_request_t request;                  /* the one that waits */
     struct {
         mh_node_id origin;
         mh_tick time;
-    } seen[MH_COLLECTION_SEEN];
-    uint8_t seen_count, seen_next;
-    uint8_t refused;          /* unicasts to the parent in a row that were not acknowledged */
-    uint8_t in_air;           /* frames whose outcome is not known ... */
-    uint16_t broadcasts;      /* ... and which of them are broadcasts: a bit each, the oldest lowest */
+        int32_t x_mm, y_mm, radius_mm;
+        uint8_t hops;
+    } request; /* the one that waits */
+    struct {
+        mh_node_id origin;
+        mh_tick time;
+    } seen[MH_COLLECTION_SEEN_MAX]; /* origin is MH_BROADCAST in a free place */
+    uint8_t seen_next;
+    uint8_t refused;    /* unicasts to the parent in a row that were not acknowledged */
+    uint8_t sent, told; /* frames handed to the radio, and those of them whose fate is known; wrap */
+    struct mh_collection_kept kept[MH_COLLECTION_KEPT_MAX];
+    uint16_t retries;
     uint16_t lost[MH_LOSSES]; /* reports, by reason; saturates */
 };
 
 extern const struct mh_protocol mh_protocol_collection;
 
-/* nominal configuration: 30 s, 100 ms, 40 ms, 3 copies, 15 m */
+/* nominal configuration: 30 s, 100 ms, 40 ms, 3 copies, 15 m, 5 attempts, 20 ms */
 void mh_collection_config_default(struct mh_collection_config *config);
 
 #endif

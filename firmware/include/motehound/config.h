@@ -54,6 +54,23 @@
 #define MH_HOPS_MAX 64
 #endif
 
+/* Reports that a node of the protocol `collection` keeps until it knows that its parent has them, to send them again; some 40 bytes each. What
+ * comes on top is sent too, but once. And requests it remembers, 8 bytes each, so that it relays none twice: one a head is needed. */
+#ifndef MH_COLLECTION_KEPT_MAX
+#ifdef __AVR__
+#define MH_COLLECTION_KEPT_MAX 1
+#else
+#define MH_COLLECTION_KEPT_MAX 8
+#endif
+#endif
+#ifndef MH_COLLECTION_SEEN_MAX
+#ifdef __AVR__
+#define MH_COLLECTION_SEEN_MAX 2
+#else
+#define MH_COLLECTION_SEEN_MAX 3
+#endif
+#endif
+
 /* Neighbours that a node of a geographic protocol keeps, 20 bytes each. Face routing delivers for sure where no node has more neighbours
  * than this in the Gabriel graph (4 on average, at most 9 of 100,000 random nodes); more of them make greedy hops longer in a dense field. */
 #ifndef MH_NEIGHBOURS_MAX
@@ -126,8 +143,13 @@
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
 #endif
+#if MH_COLLECTION_KEPT_MAX < 1 || MH_COLLECTION_KEPT_MAX > 100 || MH_COLLECTION_SEEN_MAX < 1 ||                        \
+    MH_COLLECTION_SEEN_MAX > 100
+#error "MH_COLLECTION_KEPT_MAX and MH_COLLECTION_SEEN_MAX must be 1 to 100: both are searched linearly"
+#endif
 #if MH_NEIGHBOURS_MAX < 4 || MH_NEIGHBOURS_MAX > 250
-#error "MH_NEIGHBOURS_MAX must be 4 to 250: a Gabriel graph has four neighbours on average, and the table is searched linearly"
+#error                                                                                                                 \
+    "MH_NEIGHBOURS_MAX must be 4 to 250: a Gabriel graph has four neighbours on average, and the table is searched linearly"
 #endif
 #if MH_LINK_QUEUE_MAX < 1 || MH_LINK_QUEUE_MAX > 100 || MH_LINK_SEEN_MAX < 1 || MH_LINK_SEEN_MAX > 250
 #error "MH_LINK_QUEUE_MAX must be 1 to 100, MH_LINK_SEEN_MAX 1 to 250: both are searched linearly"
@@ -136,7 +158,8 @@
 #error "MH_ROUTE_HOPS_MAX must be 1 to 32767: it travels as 16 bits with a sign"
 #endif
 #if MH_CLOCK_PAIRS < 2 || MH_CLOCK_PAIRS > 32 || MH_CLOCK_NEIGHBOURS < 1 || MH_CLOCK_NEIGHBOURS > 250
-#error "MH_CLOCK_PAIRS must be 2 to 32, MH_CLOCK_NEIGHBOURS 1 to 250: a line needs two pairs, and its sums have room for 32"
+#error                                                                                                                 \
+    "MH_CLOCK_PAIRS must be 2 to 32, MH_CLOCK_NEIGHBOURS 1 to 250: a line needs two pairs, and its sums have room for 32"
 #endif
 #if MH_KALMAN_STATES_MAX < 4 || MH_KALMAN_STATES_MAX > 16
 #error                                                                                                                 \

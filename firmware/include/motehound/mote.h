@@ -65,17 +65,17 @@ struct mh_mote {
     const struct mh_mote_config *config;
     const struct mh_port *port;
     void *port_context;
-    bool tracking; /* the network follows a track */
-    bool asked;    /* the sample of asked_time is to be reported, whatever it is */
+    bool tracking : 1;           /* the network follows a track */
+    bool asked : 1;              /* the sample of asked_time is to be reported, whatever it is */
+    bool report_waits : 1;       /* the sample of report_instant is to be reported at report_time */
+    bool protocol_alarm_set : 1; /* the protocol's timer() is due at protocol_alarm */
+    bool alarm_set : 1;          /* `alarm` is what the port was last told: the earliest of all that is due */
+    bool may_sleep : 1;          /* as last told to the port */
     mh_tick asked_time;
-    bool report_waits;       /* a sample is to be reported ... */
-    mh_tick report_time;     /* ... at this time of the mote's own ... */
-    mh_tick report_instant;  /* ... taken then, in the network's */
-    mh_tick protocol_alarm;  /* when the protocol's timer() is due ... */
-    bool protocol_alarm_set; /* ... if it is */
-    mh_tick alarm;           /* as last told to the port ... */
-    bool alarm_set;          /* ... if ever: the earliest of the protocol's, the clock's and the head's */
-    bool may_sleep;          /* as last told to the port */
+    mh_tick report_instant;
+    mh_tick report_time;
+    mh_tick protocol_alarm;
+    mh_tick alarm;
     struct mh_mote_counters counters;
     struct mh_protocol_node node;
     struct mh_sensor sensor;

@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-#define IN_AIR_KNOWN 16 /* frames in the air of which is known whether they are broadcasts */
-#define REFUSALS_MAX 3  /* in a row, of a parent */
-#define NEWS_SHARE 8    /* a path shorter by this part of its hops is worth another relay within a round */
+#define REFUSALS_MAX 3 /* in a row, of a parent */
+#define DOUBLINGS_MAX 6
+#define NEWS_SHARE 8 /* a path shorter by this part of its hops is worth another relay within a round */
 
 static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a : b; }
 
@@ -26,24 +26,28 @@ static void arm(struct mh_collection *c)
     if (c->request_waits) {
         next = earlier(next, c->request_time);
     }
+    for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
+        if (c->kept[i].attempts > 0 && !c->kept[i].in_air) {
+            next = earlier(next, c->kept[i].due);
+        }
+    }
     c->node->port->set_timer(c->node->context, next);
 }
 
 static void send(struct mh_collection *c, mh_node_id destination, const struct mh_message *message)
 {
-    if (destination == MH_BROADCAST && c->in_air < IN_AIR_KNOWN) {
-        c->broadcasts = (uint16_t)(c->broadcasts | 1u << c->in_air);
-    }
-    c->in_air = (uint8_t)(c->in_air + (c->in_air < UINT8_MAX));
+    c->sent++;
     c->node->port->send(c->node->context, destination, message);
 }
 
-static void drop(struct mh_collection *c, enum mh_loss reason)
+static void count(uint16_t *counter)
 {
-    if (c->lost[reason] < UINT16_MAX) {
-        c->lost[reason]++;
+    if (*counter < UINT16_MAX) {
+        (*counter)++;
     }
 }
+
+static void drop(struct mh_collection *c, enum mh_loss reason) { count(&c->lost[reason]); }
 
 /* ---- the tree ---- */
 
@@ -155,6 +159,66 @@ static void hear_beacon(struct mh_collection *c, mh_tick now, const mh_beacon_t 
 
 /* ---- reports, up the tree ---- */
 
+static void send_up(struct mh_collection *c, const struct mh_measurement *measurement, uint8_t hops)
+{
+    struct mh_message message = {.kind = MH_MESSAGE_REPORT};
+    mh_report_from_measurement(measurement, &message.as.report);
+    message.as.report.sender = (int32_t)c->node->id;
+    message.as.report.hops = hops;
+    send(c, c->parent, &message);
+}
+
+static void send_kept(struct mh_collection *c, struct mh_collection_kept *kept)
+{
+    kept->in_air = true;
+    kept->due = c->sent;
+    kept->attempts++;
+    send_up(c, &kept->measurement, kept->hops);
+}
+
+/* A report goes out at once, whether or not there is room to keep it. */
+static void send_report(struct mh_collection *c, const struct mh_measurement *measurement, uint8_t hops)
+{
+    for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
+        if (c->kept[i].attempts == 0) {
+            c->kept[i].measurement = *measurement;
+            c->kept[i].hops = hops;
+            send_kept(c, &c->kept[i]);
+            return;
+        }
+    }
+    send_up(c, measurement, hops);
+}
+
+static void send_again(struct mh_collection *c, mh_tick now)
+{
+    for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
+        if (c->kept[i].attempts > 0 && !c->kept[i].in_air && has_come(c->kept[i].due, now)) {
+            send_kept(c, &c->kept[i]);
+            return; /* others that are due set off the alarm at once */
+        }
+    }
+}
+
+/* The wait doubles from attempt to attempt. Of each, half is the same for all, half depends on who waits and how often it has. */
+static mh_tick backoff(const struct mh_collection *c, uint8_t attempts)
+{
+    const uint8_t doublings = attempts - 1 < DOUBLINGS_MAX ? (uint8_t)(attempts - 1) : DOUBLINGS_MAX;
+    const mh_tick longest = c->config->backoff << doublings;
+    return longest - mh_spread(c->node->id, c->retries, longest / 2 + 1);
+}
+
+/* The report in the frame whose fate is told, or NULL. */
+static struct mh_collection_kept *find_sent(struct mh_collection *c)
+{
+    for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
+        if (c->kept[i].attempts > 0 && c->kept[i].in_air && c->kept[i].due == c->told) {
+            return &c->kept[i];
+        }
+    }
+    return NULL;
+}
+
 static void hear_report(struct mh_collection *c, mh_tick now, const mh_report_t *report)
 {
     if (c->node->is_head) {
@@ -175,45 +239,48 @@ static void hear_report(struct mh_collection *c, mh_tick now, const mh_report_t 
         }
         return;
     }
-    struct mh_message relayed = {.kind = MH_MESSAGE_REPORT, .as.report = *report};
-    relayed.as.report.sender = (int32_t)c->node->id;
-    relayed.as.report.hops++;
-    send(c, c->parent, &relayed);
+    struct mh_measurement measurement;
+    mh_report_to_measurement(report, &measurement);
+    send_report(c, &measurement, (uint8_t)(report->hops + 1));
 }
 
 /* Broadcasts are not acknowledged: only the parent can refuse, and that they are out does not speak for it. */
 static void sent(void *state, mh_tick now, enum mh_sent outcome)
 {
     struct mh_collection *c = state;
-    const bool of_broadcast = (c->broadcasts & 1u) != 0;
-    c->broadcasts >>= 1;
-    c->in_air = (uint8_t)(c->in_air - (c->in_air > 0));
-    if (outcome == MH_SENT_OK) {
-        c->refused = of_broadcast ? c->refused : 0;
-    } else if (outcome == MH_SENT_NO_ACK) {
-        drop(c, MH_LOSS_NOT_ACKNOWLEDGED);
-        if (++c->refused == REFUSALS_MAX) {
-            ask_for_a_path(c, now);
-            arm(c);
-        }
+    struct mh_collection_kept *kept = find_sent(c);
+    c->told++;
+    if (kept && (outcome == MH_SENT_OK || kept->attempts >= c->config->attempts)) {
+        kept->attempts = 0;
+    } else if (kept) {
+        count(&c->retries);
+        kept->in_air = false;
+        kept->due = now + backoff(c, kept->attempts);
     }
+    const bool given_up = outcome == MH_SENT_NO_ACK && !(kept && kept->attempts > 0);
+    if (given_up || (kept && kept->attempts == 0 && outcome != MH_SENT_OK)) {
+        drop(c, MH_LOSS_NOT_ACKNOWLEDGED);
+    }
+    if (outcome == MH_SENT_OK) {
+        c->refused = kept ? 0 : c->refused;
+    } else if (outcome == MH_SENT_NO_ACK && ++c->refused == REFUSALS_MAX) {
+        ask_for_a_path(c, now);
+    }
+    arm(c);
 }
 
 /* ---- requests, towards a place ---- */
 
 static bool remember(struct mh_collection *c, const mh_request_t *request)
 {
-    for (uint8_t i = 0; i < c->seen_count; i++) {
+    for (uint8_t i = 0; i < MH_COLLECTION_SEEN_MAX; i++) {
         if (c->seen[i].origin == (mh_node_id)request->origin && c->seen[i].time == (mh_tick)request->time_ms) {
             return false;
         }
     }
     c->seen[c->seen_next].origin = (mh_node_id)request->origin;
     c->seen[c->seen_next].time = (mh_tick)request->time_ms;
-    c->seen_next = (uint8_t)((c->seen_next + 1) % MH_COLLECTION_SEEN);
-    if (c->seen_count < MH_COLLECTION_SEEN) {
-        c->seen_count++;
-    }
+    c->seen_next = (uint8_t)((c->seen_next + 1) % MH_COLLECTION_SEEN_MAX);
     return true;
 }
 
@@ -242,7 +309,12 @@ static void consider_request(struct mh_collection *c, mh_tick now, const mh_requ
             return;
         }
     }
-    c->request = *request;
+    c->request.origin = (mh_node_id)request->origin;
+    c->request.time = (mh_tick)request->time_ms;
+    c->request.x_mm = request->x_mm;
+    c->request.y_mm = request->y_mm;
+    c->request.radius_mm = request->radius_mm;
+    c->request.hops = (uint8_t)(request->hops + 1);
     c->request_waits = true;
     c->request_copies = 0;
     c->request_time = now + 1 + wait;
@@ -260,7 +332,8 @@ static void hear_request(struct mh_collection *c, mh_tick now, const mh_request_
         interest.radius_mm <= range && mh_place_within(&sender, &interest.centre, range - interest.radius_mm);
     if (remember(c, request)) {
         consider_request(c, now, request, &sender, &interest, covered);
-    } else if (c->request_waits && c->request.origin == request->origin && c->request.time_ms == request->time_ms) {
+    } else if (c->request_waits && c->request.origin == (mh_node_id)request->origin &&
+               c->request.time == (mh_tick)request->time_ms) {
         const bool inside = mh_place_within(&c->node->place, &interest.centre, interest.radius_mm);
         const bool needless = inside ? ++c->request_copies >= c->config->suppress_after
                                      : mh_place_distance_mm(&sender, &interest.centre) <=
@@ -287,12 +360,16 @@ static enum mh_status init(void *state, const void *config, const struct mh_prot
     if (!c || !chosen || !node || chosen->beacon_period < 1000 || chosen->beacon_period > 3600000u ||
         chosen->beacon_wait < 1 || chosen->beacon_wait > 1000 || chosen->request_wait < 1 ||
         chosen->request_wait > 1000 || chosen->suppress_after < 1 || chosen->range_mm < 1 ||
-        chosen->range_mm > 1000000000u) {
+        chosen->range_mm > 1000000000u || chosen->attempts < 1 || chosen->attempts > 100 || chosen->backoff < 1 ||
+        chosen->backoff > 1000) {
         return MH_ERR_ARGUMENT;
     }
     memset(c, 0, sizeof *c);
     c->config = chosen;
     c->node = node;
+    for (uint8_t i = 0; i < MH_COLLECTION_SEEN_MAX; i++) {
+        c->seen[i].origin = MH_BROADCAST;
+    }
     return MH_OK;
 }
 
@@ -341,9 +418,15 @@ static void timer(void *state, mh_tick now)
     }
     if (c->request_waits && has_come(c->request_time, now)) {
         c->request_waits = false;
-        c->request.hops++;
-        send_request(c, &c->request);
+        const mh_request_t request = {.origin = (int32_t)c->request.origin,
+                                      .time_ms = (int32_t)c->request.time,
+                                      .x_mm = c->request.x_mm,
+                                      .y_mm = c->request.y_mm,
+                                      .radius_mm = c->request.radius_mm,
+                                      .hops = c->request.hops};
+        send_request(c, &request);
     }
+    send_again(c, now);
     if (has_come(c->upkeep_time, now)) {
         if (c->node->is_head) {
             begin_round(c, now);
@@ -361,9 +444,7 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     if (!c->joined || c->node->is_head) {
         return MH_ERR_NO_ROUTE;
     }
-    struct mh_message message_up = {.kind = MH_MESSAGE_REPORT};
-    mh_report_from_measurement(measurement, &message_up.as.report);
-    send(c, c->parent, &message_up);
+    send_report(c, measurement, 0);
     return MH_OK;
 }
 
@@ -395,12 +476,13 @@ static void tell_tracking(void *state, mh_tick now, bool tracking)
     }
 }
 
-static void count(const void *state, struct mh_protocol_counters *counters)
+static void add_counters(const void *state, struct mh_protocol_counters *counters)
 {
     const struct mh_collection *c = state;
     for (uint8_t reason = 0; reason < MH_LOSSES; reason++) {
         counters->lost[reason] += c->lost[reason];
     }
+    counters->retries += c->retries;
 }
 
 static mh_wire_types types[] = {&mh_wire_beacon, &mh_wire_report, &mh_wire_request, NULL};
@@ -418,12 +500,17 @@ const struct mh_protocol mh_protocol_collection = {
     .publish = publish,
     .ask = ask,
     .tell_tracking = tell_tracking,
-    .count = count,
+    .count = add_counters,
 };
 
 void mh_collection_config_default(struct mh_collection_config *config)
 {
-    const struct mh_collection_config nominal = {
-        .beacon_period = 30000, .beacon_wait = 100, .request_wait = 40, .suppress_after = 3, .range_mm = 15000};
+    const struct mh_collection_config nominal = {.beacon_period = 30000,
+                                                 .beacon_wait = 100,
+                                                 .request_wait = 40,
+                                                 .suppress_after = 3,
+                                                 .range_mm = 15000,
+                                                 .attempts = 5,
+                                                 .backoff = 20};
     *config = nominal;
 }

@@ -113,6 +113,12 @@ static void bad_configurations_are_refused(void)
     bad = config;
     bad.range_mm = 0;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, collection->init(&state, &bad, &node));
+    bad = config;
+    bad.attempts = 0;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, collection->init(&state, &bad, &node));
+    bad = config;
+    bad.backoff = 1001;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, collection->init(&state, &bad, &node));
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, collection->init(&state, NULL, &node));
 }
 
@@ -271,25 +277,81 @@ static void reports_go_up_and_never_in_circles(void)
     TEST_ASSERT_EQUAL_UINT32(1, counters.lost[MH_LOSS_LOOP]);
 }
 
-/* Three in a row that were not acknowledged: any path as short as the parent's is taken instead, but not the parent's own. */
-static void a_parent_that_is_gone_is_replaced(void)
+static void publish(mh_tick time)
+{
+    const struct mh_measurement measurement = {.node = 10, .time = time};
+    TEST_ASSERT_EQUAL(MH_OK, collection->publish(&state, time, &measurement));
+}
+
+/* The fates come in the order of sending; the waits double, and half of each is chance. */
+static void a_report_that_the_radio_gives_up_is_sent_again(void)
+{
+    config.backoff = 100;
+    config.attempts = 3;
+    hear_beacon(5, 1, 7, 3);
+    collection->timer(&state, saw.timer); /* relays the beacon: the first fate is its own */
+    publish(1000);
+    const unsigned before = saw.sent;
+    collection->sent(&state, 1001, MH_SENT_BUSY);
+    TEST_ASSERT_EQUAL(0, state.retries);
+    for (unsigned again = 0; again < 2; again++) {
+        const mh_tick now = 1010 + again * 1000, longest = 100u << again;
+        collection->sent(&state, now, again ? MH_SENT_BUSY : MH_SENT_NO_ACK);
+        TEST_ASSERT_TRUE(saw.timer - now >= longest / 2 && saw.timer - now <= longest);
+        collection->timer(&state, saw.timer - 1);
+        TEST_ASSERT_EQUAL(before + again, saw.sent);
+        collection->timer(&state, saw.timer);
+        TEST_ASSERT_EQUAL(before + again + 1, saw.sent);
+        TEST_ASSERT_EQUAL_INT32(1000, saw.message.as.report.time_ms);
+        TEST_ASSERT_EQUAL_UINT32(5, saw.destination);
+    }
+    TEST_ASSERT_EQUAL(0, state.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
+    collection->sent(&state, 3000, MH_SENT_BUSY);
+    TEST_ASSERT_EQUAL(1, state.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
+    TEST_ASSERT_EQUAL(2, state.retries);
+    publish(4000); /* acknowledged, so not sent again */
+    collection->sent(&state, 4005, MH_SENT_OK);
+    collection->timer(&state, 10000);
+    TEST_ASSERT_EQUAL(before + 3, saw.sent);
+}
+
+static void what_cannot_be_kept_is_sent_once(void)
 {
     hear_beacon(5, 1, 7, 3);
     collection->timer(&state, saw.timer);
+    collection->sent(&state, 300, MH_SENT_OK); /* the beacon */
     const unsigned before = saw.sent;
-    collection->sent(&state, 200, MH_SENT_NO_ACK);
-    collection->sent(&state, 200, MH_SENT_NO_ACK);
-    collection->sent(&state, 200, MH_SENT_OK);
-    collection->sent(&state, 200, MH_SENT_NO_ACK);
-    collection->sent(&state, 200, MH_SENT_BUSY); /* not the parent's fault */
-    collection->sent(&state, 200, MH_SENT_NO_ACK);
-    TEST_ASSERT_EQUAL(before, saw.sent);
-    TEST_ASSERT_FALSE(state.stale);
-    collection->sent(&state, 200, MH_SENT_NO_ACK);
-    TEST_ASSERT_EQUAL(before + 1, saw.sent);
+    for (mh_tick i = 0; i <= MH_COLLECTION_KEPT_MAX; i++) {
+        publish(1000 + i);
+    }
+    TEST_ASSERT_EQUAL(before + MH_COLLECTION_KEPT_MAX + 1, saw.sent);
+    for (unsigned i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
+        collection->sent(&state, 1100, MH_SENT_OK);
+    }
+    collection->sent(&state, 1100, MH_SENT_NO_ACK);
+    TEST_ASSERT_EQUAL(1, state.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
+    TEST_ASSERT_EQUAL(0, state.retries);
+}
+
+/* Three in a row that were not acknowledged: any path as short as the parent's is taken instead, but not the parent's own. */
+static void a_parent_that_is_gone_is_replaced(void)
+{
+    static const enum mh_sent fates[] = {
+        MH_SENT_NO_ACK, MH_SENT_NO_ACK, MH_SENT_OK, MH_SENT_NO_ACK, MH_SENT_BUSY /* not the parent's fault */,
+        MH_SENT_NO_ACK, MH_SENT_NO_ACK};
+    config.attempts = 1;
+    hear_beacon(5, 1, 7, 3);
+    collection->timer(&state, saw.timer);
+    collection->sent(&state, 200, MH_SENT_OK); /* the beacon */
+    for (size_t i = 0; i < sizeof fates / sizeof *fates; i++) {
+        TEST_ASSERT_FALSE(state.stale);
+        publish(200);
+        TEST_ASSERT_EQUAL(MH_MESSAGE_REPORT, saw.message.kind);
+        collection->sent(&state, 200, fates[i]);
+    }
     TEST_ASSERT_EQUAL_UINT32(MH_BROADCAST, saw.destination);
     TEST_ASSERT_EQUAL_INT32(-1, saw.message.as.beacon.sink);
-    TEST_ASSERT_EQUAL_UINT16(5, state.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
+    TEST_ASSERT_EQUAL_UINT16(6, state.lost[MH_LOSS_NOT_ACKNOWLEDGED]);
     hear_beacon(5, 1, 7, 3);
     TEST_ASSERT_TRUE(state.stale);
     hear_beacon(6, 1, 7, 4); /* could be its own child's */
@@ -373,16 +435,16 @@ static void the_broadcast_that_covers_the_place_is_the_last(void)
 
 static void requests_of_several_heads_are_told_apart(void)
 {
-    for (mh_node_id head = 1; head <= MH_COLLECTION_SEEN; head++) {
+    for (mh_node_id head = 1; head <= MH_COLLECTION_SEEN_MAX; head++) {
         hear_request(head, 1000, 90000);
     }
-    TEST_ASSERT_EQUAL(MH_COLLECTION_SEEN, saw.asked);
-    for (mh_node_id head = 1; head <= MH_COLLECTION_SEEN; head++) {
+    TEST_ASSERT_EQUAL(MH_COLLECTION_SEEN_MAX, saw.asked);
+    for (mh_node_id head = 1; head <= MH_COLLECTION_SEEN_MAX; head++) {
         hear_request(head, 1000, 90000);
     }
-    TEST_ASSERT_EQUAL(MH_COLLECTION_SEEN, saw.asked);
+    TEST_ASSERT_EQUAL(MH_COLLECTION_SEEN_MAX, saw.asked);
     hear_request(10, 1000, 90000); /* its own */
-    TEST_ASSERT_EQUAL(MH_COLLECTION_SEEN, saw.asked);
+    TEST_ASSERT_EQUAL(MH_COLLECTION_SEEN_MAX, saw.asked);
 }
 
 static void the_sink_begins_rounds_and_takes_reports(void)
@@ -423,6 +485,8 @@ int main(void)
     RUN_TEST(reports_go_up_and_never_in_circles);
     RUN_TEST(a_parent_that_is_gone_is_replaced);
     RUN_TEST(broadcasts_do_not_excuse_a_parent);
+    RUN_TEST(a_report_that_the_radio_gives_up_is_sent_again);
+    RUN_TEST(what_cannot_be_kept_is_sent_once);
     RUN_TEST(two_nodes_that_take_each_other_for_parents_notice);
     RUN_TEST(a_request_is_relayed_once_and_only_where_it_helps);
     RUN_TEST(the_broadcast_that_covers_the_place_is_the_last);
