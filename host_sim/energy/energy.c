@@ -122,7 +122,7 @@ static void settle(struct energy *energy, uint32_t index, sim_time time)
     uint64_t elapsed = time - mote->since;
     const uint32_t power = radio_power(energy, mote->state);
     const int64_t used_pj = (int64_t)(elapsed * power);
-    if (used_pj > mote->left_pj) {
+    if (used_pj > mote->left_pj && power > 0) {
         elapsed = (uint64_t)mote->left_pj / power;
         mote->time_us[mote->cell] += elapsed;
         mote->left_pj -= (int64_t)(elapsed * power);
@@ -264,7 +264,7 @@ static int by_value(const void *a, const void *b)
 /* Deaths in order of time, and from them the lifetimes. */
 static int lifetimes(const struct energy *energy, struct energy_totals *totals)
 {
-    sim_time *deaths = malloc(energy->count * sizeof *deaths);
+    sim_time *deaths = malloc((energy->count + 1) * sizeof *deaths); /* of at least one byte */
     if (!deaths) {
         return -1;
     }

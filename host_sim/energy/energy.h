@@ -80,13 +80,13 @@ int energy_make(struct energy *energy, const struct energy_config *config, uint3
 
 void energy_free(struct energy *energy);
 
-/* The radio of `mote` is in `state` (up to ENERGY_TRANSMIT, or ENERGY_OFF) from `time` on, which is not before the last
+/* The radio of mote `index` is in `state` (up to ENERGY_TRANSMIT, or ENERGY_OFF) from `time` on, which is not before the last
  * change. Ignored for the dead. */
-void energy_radio(struct energy *energy, uint32_t mote, sim_time time, enum energy_state state,
+void energy_radio(struct energy *energy, uint32_t index, sim_time time, enum energy_state state,
                   enum energy_cause cause);
 
 /* ENERGY_CPU or ENERGY_SENSING for so long, beginning at `time`. Ignored for the dead and for those who are off. */
-void energy_charge(struct energy *energy, uint32_t mote, sim_time time, enum energy_state state,
+void energy_charge(struct energy *energy, uint32_t index, sim_time time, enum energy_state state,
                    enum energy_cause cause, uint64_t duration_us);
 
 /* When energy_run is to be called again, at the latest; SIM_TIME_NEVER if no battery can empty any more. */
@@ -102,14 +102,14 @@ bool energy_is_dead(const struct energy *energy, uint32_t mote);
 /* Neither dead nor switched off. */
 bool energy_is_on(const struct energy *energy, uint32_t mote);
 
-/* What `mote` has used until `now`, J. */
-void energy_of_mote(const struct energy *energy, uint32_t mote, sim_time now,
+/* What mote `index` has used until `now`, J. */
+void energy_of_mote(const struct energy *energy, uint32_t index, sim_time now,
                     double joules[ENERGY_STATES][ENERGY_CAUSES]);
 
-double energy_used_j(const struct energy *energy, uint32_t mote, sim_time now);
+double energy_used_j(const struct energy *energy, uint32_t index, sim_time now);
 
 /* Share of the battery that is left, 1 on mains. */
-double energy_battery_left(const struct energy *energy, uint32_t mote, sim_time now);
+double energy_battery_left(const struct energy *energy, uint32_t index, sim_time now);
 
 struct energy_totals {
     double joules[ENERGY_STATES][ENERGY_CAUSES];

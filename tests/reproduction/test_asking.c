@@ -1,10 +1,10 @@
 /* The default tracker with and without the silent nodes that it asks for, on the same readings and with nothing lost: their silence says where
  * the source is not. */
 #include "experiment.h"
-#include "roster.h"
 #include "port.h"
 #include "readings.h"
 #include "record/statistics.h"
+#include "roster.h"
 #include "trackers.h"
 #include "unity.h"
 

@@ -44,7 +44,7 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
  * Errors, each counted: MH_ERR_TIME (its instant is closed, or is not yet the next), MH_ERR_REPEATED (same node, target and
  * instant), MH_ERR_CAPACITY (one gave way, this or another: the smallest increment, of equal ones the largest node
  * number, so that what is kept does not depend on the order of arrival). */
-enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *measurement);
+enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *given);
 
 /* When the instant being gathered is to be closed. */
 mh_tick mh_head_deadline(const struct mh_head *head);

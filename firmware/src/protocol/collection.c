@@ -479,7 +479,7 @@ static void tell_tracking(void *state, mh_tick now, bool tracking)
 static void add_counters(const void *state, struct mh_protocol_counters *counters)
 {
     const struct mh_collection *c = state;
-    for (uint8_t reason = 0; reason < MH_LOSSES; reason++) {
+    for (int reason = 0; reason < MH_LOSSES; reason++) {
         counters->lost[reason] += c->lost[reason];
     }
     counters->retries += c->retries;

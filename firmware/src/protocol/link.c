@@ -188,7 +188,7 @@ bool mh_link_alarm(const struct mh_link *link, mh_tick *time)
 
 void mh_link_count(const struct mh_link *link, struct mh_protocol_counters *counters)
 {
-    for (uint8_t reason = 0; reason < MH_LOSSES; reason++) {
+    for (int reason = 0; reason < MH_LOSSES; reason++) {
         counters->lost[reason] += link->lost[reason];
     }
     counters->retries += link->retries;

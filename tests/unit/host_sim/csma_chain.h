@@ -54,7 +54,8 @@ static void chain_add_fresh(struct chain_waits *to, int lag, double weight)
             to->p[0][wait] += share;
         } else {
             for (unsigned i = 0; i < chain_windows[1]; i++) {
-                to->p[1][wait + CHAIN_SENSE + (int)i * CHAIN_UNIT] += share / chain_windows[1];
+                const int left = wait + CHAIN_SENSE + (int)i * CHAIN_UNIT; /* below 0: due a bin ago, so now */
+                to->p[1][left > 0 ? left : 0] += share / chain_windows[1];
             }
         }
     }
