@@ -190,6 +190,11 @@ static void act(struct network *network, const struct host_action *action)
     case HOST_CLOCK:
         take_clock_error(network, action->mote, action->as.clock_error_s);
         break;
+    case HOST_SENSE:
+        if (config->sense) {
+            config->sense(config->context, action->mote);
+        }
+        break;
     }
 }
 

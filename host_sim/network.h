@@ -29,6 +29,8 @@ struct network_config {
     void *context;
     /* An instant asked for with network_schedule has come. Returns 0, or -1 to end the run for want of memory. */
     int (*instant)(void *context);
+    /* Mote `mote` lets its sensor sample, now. May be NULL. */
+    void (*sense)(void *context, uint32_t mote);
     /* The head's estimate for the instant `time_s`. */
     void (*report)(void *context, double now_s, double time_s, const struct mh_estimate *estimate);
 };

@@ -51,9 +51,9 @@ struct host_event {
     } as;
 };
 
-enum host_action_kind { HOST_TRANSMIT, HOST_REPORT, HOST_SLEEP, HOST_CLOCK };
+enum host_action_kind { HOST_TRANSMIT, HOST_REPORT, HOST_SLEEP, HOST_CLOCK, HOST_SENSE };
 
-/* What a mote did; the first three as in struct mh_port. */
+/* What a mote did; as in struct mh_port but for HOST_CLOCK. */
 struct host_action {
     sim_time time;
     enum host_action_kind kind;

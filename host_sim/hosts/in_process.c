@@ -121,7 +121,10 @@ static void set_alarm(void *context, mh_tick tick)
     }
 }
 
-static const struct mh_port port = {transmit, set_alarm, report, may_sleep};
+static void sense(void *context) { (void)act(context, HOST_SENSE); }
+
+static const struct mh_port port = {
+    .transmit = transmit, .set_alarm = set_alarm, .report = report, .sleep = may_sleep, .sense = sense};
 
 /* ---- what happens to a mote ---- */
 

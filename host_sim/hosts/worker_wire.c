@@ -182,6 +182,8 @@ static motehound_worker_estimate_t estimate_message(const struct mh_estimate *es
         .covariance_m2 = {(double)estimate->covariance.xx, (double)estimate->covariance.xy,
                           (double)estimate->covariance.yy},
         .raw_m = {(double)estimate->raw.x, (double)estimate->raw.y},
+        .stored_m = {(double)estimate->stored.x, (double)estimate->stored.y},
+        .stored_velocity_mps = {(double)estimate->stored_velocity.x, (double)estimate->stored_velocity.y},
         .age_s = (double)estimate->age,
         .measurements = estimate->measurements,
         .target = estimate->target,
@@ -190,18 +192,21 @@ static motehound_worker_estimate_t estimate_message(const struct mh_estimate *es
 
 static struct mh_estimate estimate_read(const motehound_worker_estimate_t *message)
 {
-    return (struct mh_estimate){.origin = {message->origin_mm[0], message->origin_mm[1], message->origin_mm[2]},
-                                .time = (mh_tick)message->time_ticks,
-                                .position = {(mh_real)message->position_m[0], (mh_real)message->position_m[1]},
-                                .velocity = {(mh_real)message->velocity_mps[0], (mh_real)message->velocity_mps[1]},
-                                .covariance = {.xx = (mh_real)message->covariance_m2[0],
-                                               .xy = (mh_real)message->covariance_m2[1],
-                                               .yy = (mh_real)message->covariance_m2[2]},
-                                .raw = {(mh_real)message->raw_m[0], (mh_real)message->raw_m[1]},
-                                .age = (mh_real)message->age_s,
-                                .measurements = (uint16_t)message->measurements,
-                                .target = (uint8_t)message->target,
-                                .flags = (uint8_t)message->flags};
+    return (struct mh_estimate){
+        .origin = {message->origin_mm[0], message->origin_mm[1], message->origin_mm[2]},
+        .time = (mh_tick)message->time_ticks,
+        .position = {(mh_real)message->position_m[0], (mh_real)message->position_m[1]},
+        .velocity = {(mh_real)message->velocity_mps[0], (mh_real)message->velocity_mps[1]},
+        .covariance = {.xx = (mh_real)message->covariance_m2[0],
+                       .xy = (mh_real)message->covariance_m2[1],
+                       .yy = (mh_real)message->covariance_m2[2]},
+        .raw = {(mh_real)message->raw_m[0], (mh_real)message->raw_m[1]},
+        .stored = {(mh_real)message->stored_m[0], (mh_real)message->stored_m[1]},
+        .stored_velocity = {(mh_real)message->stored_velocity_mps[0], (mh_real)message->stored_velocity_mps[1]},
+        .age = (mh_real)message->age_s,
+        .measurements = (uint16_t)message->measurements,
+        .target = (uint8_t)message->target,
+        .flags = (uint8_t)message->flags};
 }
 
 motehound_worker_action_t worker_action_message(const struct host_action *action, motehound_worker_estimate_t *estimate)
@@ -225,13 +230,15 @@ motehound_worker_action_t worker_action_message(const struct host_action *action
     case HOST_CLOCK:
         message.clock_error_s = action->as.clock_error_s;
         break;
+    case HOST_SENSE:
+        break;
     }
     return message;
 }
 
 int worker_action_read(const motehound_worker_action_t *message, struct host_action *action)
 {
-    if (message->kind < HOST_TRANSMIT || message->kind > HOST_CLOCK || message->time_us < 0 ||
+    if (message->kind < HOST_TRANSMIT || message->kind > HOST_SENSE || message->time_us < 0 ||
         message->length > MH_FRAME_MAX || (message->estimates == 1) != (message->kind == HOST_REPORT)) {
         return -1;
     }
@@ -252,6 +259,8 @@ int worker_action_read(const motehound_worker_action_t *message, struct host_act
         break;
     case HOST_CLOCK:
         action->as.clock_error_s = message->clock_error_s;
+        break;
+    case HOST_SENSE:
         break;
     }
     return 0;

@@ -46,6 +46,15 @@
 #define MH_DIFFUSION_SILENCE 10
 #endif
 
+/* A track that is handed from head to head, in bytes. The tracker `msl` hands over as many of its particles as find room. */
+#ifndef MH_TRACK_BYTES_MAX
+#ifdef __AVR__
+#define MH_TRACK_BYTES_MAX 128
+#else
+#define MH_TRACK_BYTES_MAX 256
+#endif
+#endif
+
 /* Largest frame, in bytes, check sum included: the largest PSDU of IEEE 802.15.4. */
 #define MH_FRAME_MAX 127
 
@@ -139,6 +148,9 @@
 #endif
 #if MH_DIFFUSION_COAST < 1 || MH_DIFFUSION_COAST > 250 || MH_DIFFUSION_SILENCE < 1 || MH_DIFFUSION_SILENCE > 250
 #error "MH_DIFFUSION_COAST and MH_DIFFUSION_SILENCE must be 1 to 250: intervals of up to an hour, counted in ticks"
+#endif
+#if MH_TRACK_BYTES_MAX < 64 || MH_TRACK_BYTES_MAX > 1024
+#error "MH_TRACK_BYTES_MAX must be 64 to 1024: a constant-velocity filter takes 60, and each part of it is a frame"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"

@@ -29,6 +29,9 @@ struct mh_port {
     /* The radio may sleep (true) or must listen (false, and so from the start); called on changes, which come from the
      * protocol. Transmitting and the sensor are not concerned. NULL if the owner does not care. */
     void (*sleep)(void *context, bool may_sleep);
+    /* Let the sensor take a sample now, and hand it over with mh_mote_reading; without one, if it senses nothing. NULL on a mote whose
+     * sensor samples by itself. */
+    void (*sense)(void *context);
 };
 
 struct mh_mote_config {

@@ -8,6 +8,7 @@
 #ifndef MOTEHOUND_PROTOCOL_H
 #define MOTEHOUND_PROTOCOL_H
 
+#include "motehound/estimate.h"
 #include "motehound/measurement.h"
 #include "motehound/status.h"
 #include "motehound/wire.h"
@@ -50,6 +51,20 @@ struct mh_protocol_port {
     void (*tracking)(void *context, bool tracking);
     /* The radio must be able to receive (true, and so from the start) or need not (false). */
     void (*listen)(void *context, bool needed);
+
+    /* What follows is for protocols in which heads come and go; others leave it alone. */
+
+    /* Sample now, for instant `time`. What the sensor senses comes to publish(), asked for or not worth a report as it may be. */
+    void (*sense)(void *context, mh_tick now, mh_tick time);
+    /* This mote is head from the first instant after `now`, with a track that was saved (length 0: none); it goes on gathering measurements and
+     * closing instants until it is told not to be. Errors: MH_ERR_ARGUMENT (it cannot compute), or what load() returns. */
+    enum mh_status (*lead)(void *context, mh_tick now, const uint8_t *track, size_t length);
+    void (*follow)(void *context);
+    /* This head's track, as the tracker saves it, and its restart. Errors: MH_NONE (no track). */
+    enum mh_status (*save)(void *context, uint8_t *track, size_t *length);
+    void (*restart)(void *context);
+    /* This mote, which need not compute, knows where the target is: to its owner. */
+    void (*tell)(void *context, const struct mh_estimate *estimate);
 };
 
 /* The mote as its protocol sees it. Outlives the protocol's state. */
@@ -84,6 +99,9 @@ struct mh_protocol {
     enum mh_status (*ask)(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time);
     /* Head: tell the network that a track has begun or is lost. No effect on other motes. */
     void (*tell_tracking)(void *state, mh_tick now, bool tracking);
+    /* Head: an instant is closed: `estimate` is what the tracker made of the measurements, NULL if it has no position. May be NULL. */
+    void (*closed)(void *state, mh_tick now, mh_tick instant, const struct mh_estimate *estimate,
+                   const struct mh_measurement *measurements, size_t count);
     /* Add to `counters`. May be NULL. */
     void (*count)(const void *state, struct mh_protocol_counters *counters);
 };

@@ -5,34 +5,12 @@
 #ifndef MOTEHOUND_TRACKER_H
 #define MOTEHOUND_TRACKER_H
 
-#include "motehound/geometry.h"
+#include "motehound/config.h"
+#include "motehound/estimate.h"
 #include "motehound/measurement.h"
 #include "motehound/status.h"
-#include "motehound/ticks.h"
 
 #include <stddef.h>
-
-/* One position of the target. Coordinates are metres relative to `origin`. */
-struct mh_estimate {
-    struct mh_place origin;
-    mh_tick time;              /* the sampling instant the estimate belongs to */
-    struct mh_vec2 position;   /* the tracker's answer at `time` */
-    struct mh_vec2 velocity;   /* m/s */
-    struct mh_sym2 covariance; /* of position, m2; all zero where the tracker states none */
-    struct mh_vec2 raw;        /* the position before filtering; equals position where there is no such thing */
-    mh_real age; /* seconds: the position belongs to time - age where the tracker says so (Luo's tau), else 0 */
-    uint16_t measurements; /* how many measurements were used */
-    uint8_t target;
-    uint8_t flags; /* MH_ESTIMATE_* */
-};
-
-enum {
-    MH_ESTIMATE_STARTED = 1,  /* the track begins, or begins again, here */
-    MH_ESTIMATE_COASTED = 2,  /* no measurement was used: prediction only */
-    MH_ESTIMATE_FILTERED = 4, /* Luo: the Sage-Husa step ran */
-    MH_ESTIMATE_AGE_LOW = 8,  /* Luo: the bound age = 0 was active */
-    MH_ESTIMATE_AGE_HIGH = 16 /* Luo: the bound age = largest age was active */
-};
 
 struct mh_tracker {
     const char *name;
@@ -54,6 +32,17 @@ struct mh_tracker {
 
     /* Where to hear every node, silent ones too, at the next instant. Errors: MH_NONE (nobody in particular). NULL if the tracker never asks. */
     enum mh_status (*interest)(const void *state, struct mh_interest *interest);
+
+    /* All that another head needs to go on with the track -> bytes[0 .. *length), at most MH_TRACK_BYTES_MAX, the same on every
+     * machine. Errors: MH_NONE (no track). NULL if the tracker stays where it is. */
+    enum mh_status (*save)(const void *state, uint8_t *bytes, size_t *length);
+
+    /* After init: go on with a track that was saved. Errors: MH_ERR_CORRUPT (not what save writes; the state is as after init). With save. */
+    enum mh_status (*load)(void *state, const uint8_t *bytes, size_t length);
+
+    /* The target is not where the track has it: the next step looks for it about the nodes that measure it. NULL if the tracker finds out
+     * for itself. */
+    void (*restart)(void *state);
 };
 
 #endif

@@ -54,7 +54,8 @@ static void sleep_or_listen(void *context, bool may_sleep)
     port_saw.may_sleep = may_sleep;
 }
 
-static const struct mh_port port = {transmit, set_alarm, report, sleep_or_listen};
+static const struct mh_port port = {
+    .transmit = transmit, .set_alarm = set_alarm, .report = report, .sleep = sleep_or_listen};
 
 static struct {
     enum mh_status step_status, interest_status;

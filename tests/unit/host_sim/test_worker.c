@@ -322,9 +322,11 @@ static void events_and_actions_come_out_as_they_went_in(void)
         {2,
          HOST_REPORT,
          3,
-         {.estimate = {{1, -2, 3}, 4000000000u, {0.1f, 2}, {3, 4}, {5, 6, 7}, {8, 9}, 1.5f, 10, 11, 12}}},
+         {.estimate =
+              {{1, -2, 3}, 4000000000u, {0.1f, 2}, {3, 4}, {5, 6, 7}, {8, 9}, {10, 11}, {12, 13}, 1.5f, 10, 11, 12}}},
         {3, HOST_SLEEP, 4, {.may_sleep = true}},
         {4, HOST_CLOCK, 5, {.clock_error_s = -1e-6}},
+        {5, HOST_SENSE, 6, {.may_sleep = false}},
     };
     enum { ACTIONS = sizeof actions / sizeof actions[0] };
     motehound_worker_action_t done[ACTIONS];
@@ -356,6 +358,8 @@ static void events_and_actions_come_out_as_they_went_in(void)
             break;
         case HOST_CLOCK:
             TEST_ASSERT_TRUE(action.as.clock_error_s == -1e-6);
+            break;
+        case HOST_SENSE:
             break;
         }
     }
