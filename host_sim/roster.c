@@ -64,7 +64,8 @@ static void keep_time(struct mote_kit *kit, const struct scenario *scenario)
 
 int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *error, size_t error_size)
 {
-    const struct mh_place far_corner = place_from_metres(scenario->field.width_m, scenario->field.height_m, 0);
+    const struct scenario_field field = scenario_field(scenario);
+    const struct mh_place far_corner = place_from_metres(field.width_m, field.height_m, 0);
     const struct mh_region region = {0, far_corner.x_mm, 0, far_corner.y_mm};
     *kit = (struct mote_kit){.sensor = sensor_config(scenario)};
     if (tracker_choose(scenario, &region, &kit->tracker, error, error_size) ||
@@ -108,8 +109,9 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     }
     roster->count = (uint32_t)nodes + 1;
     roster->sink_id = roster->deployment.nodes[nodes - 1].id + 1;
-    roster->sink_x_m = scenario->network.sink_x_m;
-    roster->sink_y_m = scenario->network.sink_y_m;
+    const struct scenario_field field = scenario_field(scenario);
+    roster->sink_x_m = field.sink_x_m;
+    roster->sink_y_m = field.sink_y_m;
     return 0;
 }
 

@@ -143,7 +143,7 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
         run->end = (sim_time)(scenario->source.duration_s * SIM_TIME_PER_S);
         return traffic_make(&run->traffic, (size_t)scenario->traffic.sources, nodes, run->interval, seed);
     }
-    if (field_make(&run->field, scenario, error, error_size)) {
+    if (field_make(&run->field, scenario, seed, error, error_size)) {
         return -1;
     }
     run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;

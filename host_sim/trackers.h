@@ -11,9 +11,6 @@
 #include "scenario/scenario.h"
 #include "world/chatter.h"
 
-/* What a tracker's measurements are. */
-enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
-
 struct tracker_choice {
     const struct mh_tracker *tracker;
     enum quantity measures;

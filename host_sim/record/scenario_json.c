@@ -56,8 +56,15 @@ static json_t *value_of(const struct scenario *scenario, const struct scenario_k
     return NULL;
 }
 
+/* With the field that is laid out, for those who draw it. */
 json_t *scenario_json(const struct scenario *scenario)
 {
+    const struct scenario_field field = scenario_field(scenario);
+    struct scenario shown = *scenario;
+    shown.field.width_m = field.width_m;
+    shown.field.height_m = field.height_m;
+    shown.network.sink_x_m = field.sink_x_m;
+    shown.network.sink_y_m = field.sink_y_m;
     json_t *whole = json_object();
     int status = whole == NULL ? -1 : 0;
     for (size_t i = 0; i < scenario_key_count && status == 0; i++) {
@@ -75,7 +82,7 @@ json_t *scenario_json(const struct scenario *scenario)
                 status |= json_object_set_new(whole, section_name, section);
             }
         }
-        status |= json_object_set_new(section, name, value_of(scenario, key));
+        status |= json_object_set_new(section, name, value_of(&shown, key));
     }
     if (status != 0) {
         json_decref(whole);

@@ -3,12 +3,15 @@
 #include "scenario/keys.h"
 #include "scenario/text.h"
 #include "world/faults.h"
+#include "world/mobility.h"
 
 #include <math.h>
 #include <string.h>
 
 /* A mote's clock wraps after 49.7 days and tells times apart up to half of that. */
 #define RUN_MAX_S 2e6
+
+#define FIELD_MAX_M 1e5
 
 static double leg_length(const struct waypoint *a, const struct waypoint *b)
 {
@@ -28,9 +31,61 @@ static double duration(const struct scenario *scenario)
         return seconds;
     case PATH_ARCS: /* two quarters of a circle whose chords are each half the way */
         return leg_length(&points[0], &points[1]) / (4 * sin(acos(-1) / 4)) * acos(-1) / scenario->source.speed_mps;
+    case PATH_GAUSS_MARKOV:
+        return (double)scenario_steps(scenario) * scenario->sensor.interval_s;
     case PATH_STILL:
     case PATH_NONE:
         return scenario->source.duration_s;
+    }
+    return 0;
+}
+
+struct scenario_field scenario_field(const struct scenario *scenario)
+{
+    const double density = scenario->network.density;
+    if (density <= 0) {
+        return (struct scenario_field){scenario->field.width_m, scenario->field.height_m, scenario->network.sink_x_m,
+                                       scenario->network.sink_y_m};
+    }
+    const double side_m = scenario->sensor.range_m * sqrt((double)scenario->network.nodes * acos(-1) / density);
+    return (struct scenario_field){side_m, side_m, side_m / 2, side_m / 2};
+}
+
+size_t scenario_steps(const struct scenario *scenario)
+{
+    return (size_t)(scenario->source.duration_s / scenario->sensor.interval_s + 1e-9);
+}
+
+/* The field that there is, and a walk's room in it. */
+static int check_field(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const struct scenario_field field = scenario_field(scenario);
+    if (scenario->network.density > 0 && scenario->network.layout == LAYOUT_FILE) {
+        return fail(error, error_size, "%s: network.density: expected 0 for layout file, found %g", name,
+                    scenario->network.density);
+    }
+    if (scenario->network.density > 0 && (field.width_m < 1 || field.width_m > FIELD_MAX_M)) {
+        return fail(error, error_size, "%s: network.density: expected one that gives a field of 1 to %g m, found %g m",
+                    name, FIELD_MAX_M, field.width_m);
+    }
+    if (scenario->source.path == PATH_GAUSS_MARKOV) {
+        const struct mobility walk = mobility_of(scenario);
+        const double room_m = fmin(field.width_m, field.height_m) - 2 * walk.margin_m;
+        const double step_m = MOBILITY_FASTEST * walk.speed_mps * walk.interval_s;
+        if (room_m <= step_m) {
+            return fail(error, error_size,
+                        "%s: target.speed_mph: expected steps shorter than the %g m that lie sensor.range_m inside "
+                        "the field, found up to %g m",
+                        name, room_m, step_m);
+        }
+    }
+    if (field.sink_x_m < 0 || field.sink_x_m > field.width_m) {
+        return fail(error, error_size, "%s: network.sink_x_m: expected a number 0 to field.width_m = %g, found %g",
+                    name, field.width_m, field.sink_x_m);
+    }
+    if (field.sink_y_m < 0 || field.sink_y_m > field.height_m) {
+        return fail(error, error_size, "%s: network.sink_y_m: expected a number 0 to field.height_m = %g, found %g",
+                    name, field.height_m, field.sink_y_m);
     }
     return 0;
 }
@@ -69,6 +124,10 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         return fail(error, error_size,
                     "%s: source.duration_s: expected more than 0 for a still source or none, found 0", name);
     }
+    if (scenario->source.path == PATH_GAUSS_MARKOV && scenario_steps(scenario) < 1) {
+        return fail(error, error_size, "%s: source.duration_s: expected at least sensor.interval_s = %g, found %g",
+                    name, scenario->sensor.interval_s, scenario->source.duration_s);
+    }
     const double run_s = duration(scenario);
     if (!(run_s > 0) || run_s > RUN_MAX_S) {
         return fail(error, error_size, "%s: source: expected a path of more than 0 and at most %g s, found %g s", name,
@@ -82,8 +141,8 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         return fail(error, error_size, "%s: network.file: expected a nodes.csv for layout file, found nothing", name);
     }
     const double spacing_m = scenario->network.spacing_m;
-    const double cells = spacing_m > 0 ? floor(scenario->field.width_m / spacing_m * (1 + 1e-9)) *
-                                             floor(scenario->field.height_m / spacing_m * (1 + 1e-9))
+    const double cells = spacing_m > 0 ? floor(scenario_field(scenario).width_m / spacing_m * (1 + 1e-9)) *
+                                             floor(scenario_field(scenario).height_m / spacing_m * (1 + 1e-9))
                                        : (double)INFINITY;
     if (scenario->network.layout == LAYOUT_GRID && cells < (double)scenario->network.nodes) {
         return fail(error, error_size, "%s: network.spacing_m: expected cells for %lld nodes in the field, found %.0f",
@@ -93,13 +152,8 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         return fail(error, error_size, "%s: traffic.sources: expected 0 unless source.path is none, found %lld", name,
                     (long long)scenario->traffic.sources);
     }
-    if (scenario->network.sink_x_m < 0 || scenario->network.sink_x_m > scenario->field.width_m) {
-        return fail(error, error_size, "%s: network.sink_x_m: expected a number 0 to field.width_m = %g, found %g",
-                    name, scenario->field.width_m, scenario->network.sink_x_m);
-    }
-    if (scenario->network.sink_y_m < 0 || scenario->network.sink_y_m > scenario->field.height_m) {
-        return fail(error, error_size, "%s: network.sink_y_m: expected a number 0 to field.height_m = %g, found %g",
-                    name, scenario->field.height_m, scenario->network.sink_y_m);
+    if (check_field(scenario, name, error, error_size) != 0) {
+        return -1;
     }
     const double loudest_dbm = scenario->radio.power_dbm - scenario->radio.reference_loss_db;
     const double sensitivity_dbm = scenario->radio.sensitivity_dbm < 0

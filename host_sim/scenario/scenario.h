@@ -14,7 +14,8 @@ enum path_kind {
     PATH_WAYPOINTS, /* straight legs between points, each leg at its own speed factor */
     PATH_ARCS,      /* two circular arcs of 90 degrees, turning left then right, from the first point to the second */
     PATH_STILL,     /* stays at the first point for duration_s */
-    PATH_NONE       /* there is no source: for duration_s the nodes report synthetic traffic */
+    PATH_GAUSS_MARKOV, /* struct target's random walk for duration_s, its own for every seed */
+    PATH_NONE          /* there is no source: for duration_s the nodes report synthetic traffic */
 };
 
 struct waypoint {
@@ -28,7 +29,10 @@ enum sync_kind { SYNC_NONE, SYNC_FLOODING };
 
 enum routing_kind { ROUTING_TREE, ROUTING_GEOGRAPHIC, ROUTING_GREEDY };
 
-enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_FILE };
+/* What sensors measure and trackers work on. */
+enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
+
+enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE };
 
 struct scenario {
     char *name;        /* of the experiment */
@@ -41,18 +45,26 @@ struct scenario {
         struct waypoint *points;
         unsigned points_count;
         double speed_mps;
-        double duration_s;        /* of PATH_STILL and PATH_NONE; 0: the path's own */
+        double duration_s;        /* of PATH_STILL, PATH_GAUSS_MARKOV and PATH_NONE; 0: the path's own */
         double release_gps;       /* mean release rate mu */
         double release_variation; /* mu(t) = release (1 + variation sin(2 pi t / release_period)), 0 to 0.95 */
         double release_period_s;
         double diffusion_m2ps; /* D of the field (the tracker has its own) */
     } source;
     struct {
+        double speed_mph;      /* mean speed of PATH_GAUSS_MARKOV */
+        double speed_sd;       /* of the speed, as a share of its mean */
+        double heading_sd_rad; /* of the heading */
+        double memory;         /* of both from step to step: 0 draws them anew, 1 keeps them */
+    } target;
+    struct {
         int64_t nodes;
         enum layout_kind layout;
         char *file;       /* nodes.csv of LAYOUT_FILE, relative to the scenario */
         double spacing_m; /* of LAYOUT_GRID; 0: the nodes fill the field */
         double jitter;    /* of LAYOUT_GRID: share of a cell by which a node may stand off its middle */
+        double
+            density; /* mean number of nodes within sensor.range_m of a place, which then gives the field; 0: field.* does */
         double sink_x_m, sink_y_m;
         char *protocol; /* `collection` */
     } network;
@@ -64,6 +76,7 @@ struct scenario {
         int64_t sources; /* nodes that report once in sensor.interval_s where source.path is none */
     } traffic;
     struct {
+        enum quantity quantity;          /* what is measured */
         double interval_s;               /* between samples, T */
         double relative_noise;           /* sd as a share of the reading */
         double additive_noise;           /* sd, g/m2 */
@@ -71,6 +84,9 @@ struct scenario {
         double full_scale;               /* of the converter, g/m2 */
         double loss;                     /* probability that a reading never comes */
         double outage_start_s, outage_s; /* no reading of any node comes in this time; 0, 0 for none */
+        double range_m;                  /* of QUANTITY_RANGE: how far a target is detected */
+        double range_noise_m;            /* sd of a range */
+        bool noisy_detection;            /* by the noisy range, not the true one */
     } sensor;
     struct {
         double range_m;     /* unit disc */
@@ -174,6 +190,19 @@ int scenario_set(struct scenario *scenario, const char *path, const char *value,
 /* What only holds between keys: at least four nodes, a path with its points, an outage inside the run, the sink in the
  * field. Returns 0, or -1 with one line in `error`; `name` stands for the file. */
 int scenario_check(const struct scenario *scenario, const char *name, char *error, size_t error_size);
+
+/* Where the nodes are laid out and where the sink stands. */
+struct scenario_field {
+    double width_m, height_m;
+    double sink_x_m, sink_y_m;
+};
+
+/* As field.* and network.sink_* say; but where there is a network.density, the field is a square of side
+ * sensor.range_m sqrt(nodes pi / density) with the sink in its middle. */
+struct scenario_field scenario_field(const struct scenario *scenario);
+
+/* Whole sampling intervals in source.duration_s. */
+size_t scenario_steps(const struct scenario *scenario);
 
 /* The part of it that a replay needs, where there is no source and no deployment. */
 int scenario_check_tracking(const struct scenario *scenario, const char *name, char *error, size_t error_size);

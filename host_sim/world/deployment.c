@@ -1,6 +1,7 @@
 #include "world/deployment.h"
 
 #include "engine/random.h"
+#include "world/recipe.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,14 @@ static void lay_uniform(struct deployment *deployment, double width_m, double he
     for (size_t i = 0; i < deployment->count; i++) {
         deployment->nodes[i].x_m = width_m * random_uniform(stream, 2 * i);
         deployment->nodes[i].y_m = height_m * random_uniform(stream, 2 * i + 1);
+    }
+}
+
+static void lay_hashed(struct deployment *deployment, double width_m, double height_m, uint64_t seed)
+{
+    for (size_t i = 0; i < deployment->count; i++) {
+        deployment->nodes[i].x_m = width_m * recipe_uniform(seed, RECIPE_NODE_X, i);
+        deployment->nodes[i].y_m = height_m * recipe_uniform(seed, RECIPE_NODE_Y, i);
     }
 }
 
@@ -53,15 +62,16 @@ static size_t grid_columns(size_t count, double width_m, double height_m)
 
 static void lay_grid(struct deployment *deployment, const struct scenario *scenario, uint64_t seed)
 {
+    const struct scenario_field field = scenario_field(scenario);
     const struct random_stream stream = random_stream(seed, RANDOM_DEPLOYMENT);
     const size_t count = deployment->count;
     const double spacing_m = scenario->network.spacing_m, jitter = scenario->network.jitter;
     const bool fills = spacing_m <= 0;
-    const size_t columns = fills ? grid_columns(count, scenario->field.width_m, scenario->field.height_m)
-                                 : (size_t)(scenario->field.width_m / spacing_m * (1 + 1e-9));
+    const size_t columns =
+        fills ? grid_columns(count, field.width_m, field.height_m) : (size_t)(field.width_m / spacing_m * (1 + 1e-9));
     const size_t rows = (count + columns - 1) / columns;
-    const double width_m = fills ? scenario->field.width_m : spacing_m * (double)columns;
-    const double height_m = fills ? scenario->field.height_m : spacing_m * (double)rows;
+    const double width_m = fills ? field.width_m : spacing_m * (double)columns;
+    const double height_m = fills ? field.height_m : spacing_m * (double)rows;
     for (size_t i = 0; i < count; i++) {
         const size_t row = i / columns;
         const size_t in_row = row + 1 < rows || !fills ? columns : count - row * columns;
@@ -105,7 +115,7 @@ static int from_file(struct deployment *deployment, const char *path, char *erro
 int deployment_make(struct deployment *deployment, const struct scenario *scenario, uint64_t seed, char *error,
                     size_t error_size)
 {
-    const double width_m = scenario->field.width_m, height_m = scenario->field.height_m;
+    const struct scenario_field field = scenario_field(scenario);
     if (scenario->network.layout == LAYOUT_FILE) {
         return from_file(deployment, scenario->network.file, error, error_size);
     }
@@ -120,13 +130,16 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
     }
     switch (scenario->network.layout) {
     case LAYOUT_UNIFORM:
-        lay_uniform(deployment, width_m, height_m, seed);
+        lay_uniform(deployment, field.width_m, field.height_m, seed);
         break;
     case LAYOUT_R2:
-        lay_r2(deployment, width_m, height_m, seed);
+        lay_r2(deployment, field.width_m, field.height_m, seed);
         break;
     case LAYOUT_GRID:
         lay_grid(deployment, scenario, seed);
+        break;
+    case LAYOUT_HASHED:
+        lay_hashed(deployment, field.width_m, field.height_m, seed);
         break;
     case LAYOUT_FILE:
         break;

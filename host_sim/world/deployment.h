@@ -22,6 +22,7 @@ struct deployment {
  *   u_2i+1 of the same stream). Cells are squares of network.spacing_m, as many in a row as the field is wide, or fill the field: the number of columns divides the number of nodes, so that the cells are as square as can be (of
  *   two equally square ones the one with fewer columns: 32 x 40 for 1,280 in a square). Where that leaves cells longer than
  *   2 : 1 they are made square and the last row has fewer nodes, evenly spread.
+ * hashed: node i = (width U(seed, 1, i), height U(seed, 2, i)) of recipe.h.
  * file: the nodes of scenario->network.file, sorted.
  *
  * Returns 0, or -1 with one line in `error` (a file that cannot be used, no memory) and nothing to free. */

@@ -24,7 +24,7 @@ static const double node_weight[FIELD_PANEL_POINTS / 2] = {
     0.1894506104550685,  0.18260341504492358,  0.16915651939500254,  0.14959598881657674,
     0.12462897125553388, 0.095158511682492786, 0.062253523938647894, 0.027152459411754096};
 
-int field_make(struct field *field, const struct scenario *scenario, char *error, size_t error_size)
+int field_make(struct field *field, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)
 {
     *field = (struct field){.diffusion_m2ps = scenario->source.diffusion_m2ps,
                             .release_gps = scenario->source.release_gps,
@@ -38,7 +38,7 @@ int field_make(struct field *field, const struct scenario *scenario, char *error
         snprintf(error, error_size, "source.release_period_s: %g, expected above 0", field->release_period_s);
         return -1;
     }
-    return trajectory_make(&field->trajectory, scenario, error, error_size);
+    return trajectory_make(&field->trajectory, scenario, seed, error, error_size);
 }
 
 void field_free(struct field *field)

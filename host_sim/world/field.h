@@ -34,7 +34,7 @@ struct field {
 };
 
 /* The field of scenario->source. Returns 0, or -1 with one line in `error` and nothing to free. */
-int field_make(struct field *field, const struct scenario *scenario, char *error, size_t error_size);
+int field_make(struct field *field, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size);
 
 void field_free(struct field *field);
 

@@ -1,5 +1,7 @@
 #include "world/trajectory.h"
 
+#include "world/mobility.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,11 +20,16 @@ struct point leg_position(const struct leg *leg, double elapsed_s)
 
 struct point trajectory_position(const struct trajectory *trajectory, double time_s)
 {
-    const struct leg *leg = trajectory->legs;
-    const struct leg *last = leg + trajectory->count - 1;
-    while (leg < last && time_s >= leg[1].start_s) {
-        leg++;
+    size_t first = 0, end = trajectory->count; /* the last leg of [first, end) that has begun */
+    while (end - first > 1) {
+        const size_t middle = first + (end - first) / 2;
+        if (time_s >= trajectory->legs[middle].start_s) {
+            first = middle;
+        } else {
+            end = middle;
+        }
     }
+    const struct leg *leg = &trajectory->legs[first];
     return leg_position(leg, fmin(fmax(time_s - leg->start_s, 0), leg->duration_s));
 }
 
@@ -72,17 +79,44 @@ static void make_arcs(struct trajectory *trajectory, const struct waypoint *poin
     append(trajectory, right);
 }
 
-int trajectory_make(struct trajectory *trajectory, const struct scenario *scenario, char *error, size_t error_size)
+/* The path ends with a place that stays, so that each leg begins exactly where the walk is. */
+static int make_walk(struct trajectory *trajectory, const struct scenario *scenario, uint64_t seed, size_t steps)
+{
+    const struct mobility mobility = mobility_of(scenario);
+    struct point *places = malloc((steps + 1) * sizeof *places);
+    if (!places) {
+        return -1;
+    }
+    mobility_positions(&mobility, seed, steps, places);
+    for (size_t n = 0; n < steps; n++) {
+        const double dx = places[n + 1].x_m - places[n].x_m, dy = places[n + 1].y_m - places[n].y_m;
+        trajectory->legs[n] = (struct leg){.start_s = (double)n * mobility.interval_s,
+                                           .duration_s = mobility.interval_s,
+                                           .speed_mps = hypot(dx, dy) / mobility.interval_s,
+                                           .start = places[n],
+                                           .heading_rad = atan2(dy, dx)};
+    }
+    trajectory->duration_s = (double)steps * mobility.interval_s;
+    trajectory->legs[steps] = (struct leg){.start_s = trajectory->duration_s, .start = places[steps]};
+    trajectory->count = steps + 1;
+    free(places);
+    return 0;
+}
+
+int trajectory_make(struct trajectory *trajectory, const struct scenario *scenario, uint64_t seed, char *error,
+                    size_t error_size)
 {
     const struct waypoint *points = scenario->source.points;
     const unsigned count = scenario->source.points_count;
     const double speed = scenario->source.speed_mps;
-    const unsigned least = scenario->source.path == PATH_STILL ? 1 : 2;
+    const bool walks = scenario->source.path == PATH_GAUSS_MARKOV;
+    const size_t steps = walks ? scenario_steps(scenario) : 0;
+    const unsigned least = walks ? 0 : scenario->source.path == PATH_STILL ? 1 : 2;
     if (count < least) {
         snprintf(error, error_size, "source.points: %u given, the path needs at least %u", count, least);
         return -1;
     }
-    if (scenario->source.path != PATH_STILL && !(speed > 0)) {
+    if (least == 2 && !(speed > 0)) {
         snprintf(error, error_size, "source.speed_mps: %g, expected a speed above 0", speed);
         return -1;
     }
@@ -93,8 +127,9 @@ int trajectory_make(struct trajectory *trajectory, const struct scenario *scenar
             return -1;
         }
     }
-    *trajectory = (struct trajectory){.legs = calloc((size_t)count + 1, sizeof *trajectory->legs)};
-    if (!trajectory->legs) {
+    *trajectory = (struct trajectory){.legs = calloc((walks ? steps : count) + 1, sizeof *trajectory->legs)};
+    if (!trajectory->legs || (walks && make_walk(trajectory, scenario, seed, steps) != 0)) {
+        trajectory_free(trajectory);
         snprintf(error, error_size, "out of memory");
         return -1;
     }
@@ -109,6 +144,7 @@ int trajectory_make(struct trajectory *trajectory, const struct scenario *scenar
         append(trajectory,
                (struct leg){.duration_s = scenario->source.duration_s, .start = {points[0].x_m, points[0].y_m}});
         break;
+    case PATH_GAUSS_MARKOV:
     case PATH_NONE:
         break;
     }

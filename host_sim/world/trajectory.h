@@ -29,8 +29,10 @@ struct trajectory {
 /* The path of scenario->source.
  * PATH_ARCS: from the first point A to the second B along two arcs of 90 degrees, left then right, radius |AB| / (4 sin 45deg), at
  * source.speed_mps; the source sets out 45 degrees to the right of B.
+ * PATH_GAUSS_MARKOV: straight from each place of mobility.h to the next, one in a sampling interval; `seed` matters for it alone.
  * Returns 0, or -1 with one line in `error` (too few points, a speed that is not positive, no memory) and nothing to free. */
-int trajectory_make(struct trajectory *trajectory, const struct scenario *scenario, char *error, size_t error_size);
+int trajectory_make(struct trajectory *trajectory, const struct scenario *scenario, uint64_t seed, char *error,
+                    size_t error_size);
 
 void trajectory_free(struct trajectory *trajectory);
 

@@ -318,7 +318,7 @@ static void replay_of_a_simulation_is_the_simulation(void)
     static struct recorded_reading readings[NODES * INSTANTS];
     static struct recorded_truth truths[INSTANTS];
     TEST_ASSERT_EQUAL_INT(0, deployment_make(&nodes, &scenario, 3, error, sizeof error));
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, sensors_make(&sensors, &scenario, 3, NODES));
     for (unsigned p = 0; p < INSTANTS; p++) {
         TEST_ASSERT_EQUAL_INT(0, field_prepare(&field, p));

@@ -15,7 +15,7 @@ void readings_make(struct readings *readings, const struct scenario *scenario, u
     TEST_ASSERT_EQUAL_INT64(0, scenario->sensor.adc_bits);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, deployment_make(&readings->deployment, scenario, seed, error, sizeof error),
                                   error);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, field_make(&field, scenario, error, sizeof error), error);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, field_make(&field, scenario, 0, error, sizeof error), error);
     const size_t count = readings->deployment.count;
     const double interval_s = scenario->sensor.interval_s;
     readings->instants = (size_t)floor(field.trajectory.duration_s / interval_s + 1e-9) + 1;

@@ -50,7 +50,7 @@ static void still_source_has_its_closed_form(void)
     scenario.source.path = PATH_STILL;
     scenario.source.duration_s = 200;
     scenario.source.diffusion_m2ps = 0.7;
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, 0, error, sizeof error));
     double worst = 0;
     for (double t = 0.1; t < 200; t *= 1.7) {
         TEST_ASSERT_EQUAL_INT(0, field_prepare(&field, t));
@@ -120,7 +120,7 @@ static double integrate(const struct integrand *f, double tolerance)
 /* Worst relative error over random places and times where C > 1e-9 g/m2, near the path and far from it. */
 static double worst_error(const struct scenario *scenario, unsigned places)
 {
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, scenario, 0, error, sizeof error));
     const struct random_stream stream = random_stream(42, RANDOM_DEPLOYMENT);
     double worst = 0;
     unsigned judged = 0;
@@ -179,7 +179,7 @@ static void diffusion_and_release_may_vary(void)
 static void nothing_before_the_release_and_finite_at_the_source(void)
 {
     const struct scenario scenario = e1();
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, field_prepare(&field, 0));
     TEST_ASSERT_TRUE(field_concentration(&field, 0, 0) == 0);
     TEST_ASSERT_EQUAL_INT(0, field_prepare(&field, 10));
@@ -192,7 +192,7 @@ static void nothing_before_the_release_and_finite_at_the_source(void)
 static void mass_is_kept(void)
 {
     const struct scenario scenario = e1();
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, field_prepare(&field, 20));
     double mass = 0;
     for (double x = -60.125; x < 80; x += 0.25) {
@@ -216,7 +216,7 @@ static void known_answers(void)
     fclose(x);
     fclose(c);
     const struct scenario scenario = e1();
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, 0, error, sizeof error));
     for (int p = 0; p < INSTANTS; p++) {
         TEST_ASSERT_EQUAL_INT(0, field_prepare(&field, p));
         for (int i = 0; i < NODES; i++) {

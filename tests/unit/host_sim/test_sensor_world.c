@@ -131,7 +131,7 @@ static void known_answers(void)
     scenario.sensor.adc_bits = 12;
     char error[200];
     struct field field;
-    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, field_make(&field, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, sensors_make(&sensors, &scenario, 0, PLACES));
     int different = 0;
     for (int p = 0; p < INSTANTS; p++) {

@@ -16,7 +16,7 @@ void tearDown(void) { trajectory_free(&path); }
 static void two_arcs(void)
 {
     const struct scenario scenario = e1();
-    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_UINT(2, path.count);
     ASSERT_NEAR(96.3706, trajectory_length_m(&path), 5e-5);
     ASSERT_NEAR(96.3706, path.duration_s, 5e-5);
@@ -35,7 +35,7 @@ static void two_arcs(void)
 static void arcs_keep_their_distance_from_their_centre(void)
 {
     const struct scenario scenario = e1();
-    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, 0, error, sizeof error));
     const double radius = 1 / path.legs[0].curvature_radpm, heading = path.legs[0].heading_rad;
     const struct point centre = {-radius * sin(heading), radius * cos(heading)}; /* left of the start */
     for (double t = 0; t < path.legs[0].duration_s; t += 1) {
@@ -47,7 +47,7 @@ static void arcs_keep_their_distance_from_their_centre(void)
 static void waypoints(void)
 {
     const struct scenario scenario = e2();
-    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, 0, error, sizeof error));
     ASSERT_NEAR(133.612, trajectory_length_m(&path), 5e-4);
     ASSERT_NEAR(125.375, path.duration_s, 5e-4);
     for (unsigned i = 1; i < scenario.source.points_count; i++) {
@@ -61,7 +61,7 @@ static void speed_is_that_of_the_leg(void)
 {
     struct scenario scenario = e2();
     scenario.source.speed_mps = 0.5;
-    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, 0, error, sizeof error));
     ASSERT_NEAR(2 * 125.375, path.duration_s, 1e-3);
     for (unsigned i = 0; i < path.count; i++) {
         const double t = path.legs[i].start_s + 0.3 * path.legs[i].duration_s;
@@ -75,7 +75,7 @@ static void still(void)
     struct scenario scenario = e2();
     scenario.source.path = PATH_STILL;
     scenario.source.duration_s = 50;
-    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, trajectory_make(&path, &scenario, 0, error, sizeof error));
     ASSERT_NEAR(50, path.duration_s, 0);
     ASSERT_NEAR(0, trajectory_length_m(&path), 0);
     const struct point p = trajectory_position(&path, 20);
@@ -87,11 +87,11 @@ static void refuses_what_is_no_path(void)
 {
     struct scenario scenario = e1();
     scenario.source.points_count = 1;
-    TEST_ASSERT_EQUAL_INT(-1, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, trajectory_make(&path, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_STRING("source.points: 1 given, the path needs at least 2", error);
     scenario = e2();
     scenario.source.speed_mps = 0;
-    TEST_ASSERT_EQUAL_INT(-1, trajectory_make(&path, &scenario, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, trajectory_make(&path, &scenario, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_STRING("source.speed_mps: 0, expected a speed above 0", error);
 }
 
