@@ -5,8 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Why there is an instant: the caller asked for it, the observer is to be told of the motes, or they are asked for their time. */
-enum { INSTANT_OF_WORLD, INSTANT_OF_MOTES, INSTANT_OF_CLOCKS };
+/* Why there is an instant: the caller asked for it, the observer is to be told of the motes, they are asked for their time, or a mote samples. */
+enum {
+    INSTANT_OF_WORLD,
+    INSTANT_OF_MOTES,
+    INSTANT_OF_CLOCKS,
+    INSTANT_OF_SENSOR /* of mote 0; then those of all others */
+};
 
 #define MICROSECONDS_PER_TICK (SIM_TIME_PER_S / MH_TICKS_PER_S)
 
@@ -74,7 +79,19 @@ void network_reading(struct network *network, uint32_t mote, int32_t counts, uin
 {
     const struct host_event event = {network->now, HOST_READING, mote, {.reading = {counts, target}}};
     happen(network, &event);
+    if (!network->sensing) {
+        account_sample(&network->account, mote, network->now);
+    }
+}
+
+static void sense(struct network *network, uint32_t mote)
+{
     account_sample(&network->account, mote, network->now);
+    network->sensing = true;
+    if (network->config.sense) {
+        network->config.sense(network->config.context, mote);
+    }
+    network->sensing = false;
 }
 
 void network_power(struct network *network, uint32_t mote, bool on)
@@ -191,8 +208,8 @@ static void act(struct network *network, const struct host_action *action)
         take_clock_error(network, action->mote, action->as.clock_error_s);
         break;
     case HOST_SENSE:
-        if (config->sense) {
-            config->sense(config->context, action->mote);
+        if (event_queue_push(&network->instants, action->time + network->lookahead, INSTANT_OF_SENSOR + action->mote)) {
+            network->out_of_memory = true;
         }
         break;
     }
@@ -272,8 +289,11 @@ static int instant_comes(struct network *network, uint32_t why)
         return tell_motes(network);
     case INSTANT_OF_CLOCKS:
         return ask_for_time(network);
-    default:
+    case INSTANT_OF_WORLD:
         return network->config.instant(network->config.context);
+    default:
+        sense(network, why - INSTANT_OF_SENSOR);
+        return 0;
     }
 }
 

@@ -29,7 +29,7 @@ struct network_config {
     void *context;
     /* An instant asked for with network_schedule has come. Returns 0, or -1 to end the run for want of memory. */
     int (*instant)(void *context);
-    /* Mote `mote` lets its sensor sample, now. May be NULL. */
+    /* Mote `mote` lets its sensor sample, now: a lookahead after it said so. Whatever comes of it, it is charged. May be NULL. */
     void (*sense)(void *context, uint32_t mote);
     /* The head's estimate for the instant `time_s`. */
     void (*report)(void *context, double now_s, double time_s, const struct mh_estimate *estimate);
@@ -42,6 +42,7 @@ struct network {
     struct radio radio;
     struct host host;
     sim_time now; /* beginning of the window; after its end, that */
+    bool sensing; /* config.sense is being called */
     /* of the window: what happens to the motes, what they did, which frames went on the air */
     struct host_event *events;
     size_t event_count, event_capacity;
@@ -69,7 +70,7 @@ double network_time_s(const struct network *network);
 /* Have config.instant called at `time`. Returns 0, or -1 if there is no memory. */
 int network_schedule(struct network *network, sim_time time);
 
-/* For config.instant: mote `mote` has a reading, now. Readings that it refuses it counts. */
+/* For config.instant and config.sense: mote `mote` has a reading, now. Readings that it refuses it counts. In `instant` it is charged for it. */
 void network_reading(struct network *network, uint32_t mote, int32_t counts, uint8_t target);
 
 /* For config.instant: power mote `mote` up, with cleared memory, or down, now. One with an empty battery stays down. */

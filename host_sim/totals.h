@@ -56,7 +56,8 @@
     X(LIFETIME_HALF_S, "lifetime_half_s", c->energy.lifetime_half_s, "until half of the batteries were empty")                                     \
     X(MOTES_DEAD, "motes_dead", c->energy.dead, "motes whose battery is empty at the end")                                                         \
     X(ENERGY_MJ, "energy_mj", energy_mj(c, ANY, ANY), "energy used by all motes but the one on mains")                                                     \
-    X(ENERGY_MJ_LOCALISATION, "energy_mj_localisation", energy_mj(c, ANY, ENERGY_LOCALISATION), "of this for sampling, computing and asking")      \
+    X(ENERGY_MJ_LOCALISATION, "energy_mj_localisation", energy_mj(c, ANY, ENERGY_LOCALISATION), "of this for sampling and computing")              \
+    X(ENERGY_MJ_MEASURING, "energy_mj_measuring", energy_mj(c, ANY, ENERGY_MEASURING), "of this for asking for readings and answering")            \
     X(ENERGY_MJ_CLUSTERING, "energy_mj_clustering", energy_mj(c, ANY, ENERGY_CLUSTERING), "of this for clusters")                                  \
     X(ENERGY_MJ_REPORTING, "energy_mj_reporting", energy_mj(c, ANY, ENERGY_REPORTING), "of this for carrying reports")                             \
     X(ENERGY_MJ_ROUTING, "energy_mj_routing", energy_mj(c, ANY, ENERGY_ROUTING), "of this for finding ways and neighbours")                        \

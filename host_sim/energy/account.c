@@ -8,10 +8,13 @@ int account_open(struct account *account, const struct scenario *scenario, const
     if (!account->open) {
         return 0;
     }
+    const struct radio_config radio = radio_config_of(scenario, scenario->radio.range_m);
     const struct energy_config config = {.profile = profile,
                                          .power_dbm = scenario->radio.power_dbm,
                                          .battery_j = scenario->energy.battery_j,
                                          .on_mains = scenario->energy.sink_mains ? sink : UINT32_MAX,
+                                         .wake_period = radio.wake_period,
+                                         .wake_length = radio.wake_length,
                                          .order = order};
     account->sensing_us = energy_sensing_us();
     account->sample_us = energy_sample_us(profile);
@@ -39,7 +42,7 @@ enum energy_cause account_cause(enum mh_message_kind kind)
     case MH_MESSAGE_REPORT:
         return ENERGY_REPORTING;
     case MH_MESSAGE_REQUEST:
-        return ENERGY_LOCALISATION;
+        return ENERGY_MEASURING;
     case MH_MESSAGE_SYNC:
         return ENERGY_TIME;
     case MH_MESSAGE_BEACON:

@@ -11,11 +11,16 @@
 #define SHORTEST_US 1000
 
 const char *const energy_state_names[ENERGY_STATES] = {"sleep", "listen", "receive", "transmit", "cpu", "sensing"};
-const char *const energy_cause_names[ENERGY_CAUSES] = {"idle",      "localisation", "clustering",
+const char *const energy_cause_names[ENERGY_CAUSES] = {"idle",      "localisation", "measuring", "clustering",
                                                        "reporting", "routing",      "time"};
 
 /* Where the time of a state begins among the cells; the first four have a cell for each cause. */
-enum { CPU_CELLS = 3 * ENERGY_CAUSES, SLEEP_CELL = 4 * ENERGY_CAUSES, SENSING_CELL };
+enum {
+    IDLE_LISTEN_CELL = ENERGY_CAUSES + ENERGY_IDLE,
+    CPU_CELLS = 3 * ENERGY_CAUSES,
+    SLEEP_CELL = 4 * ENERGY_CAUSES,
+    SENSING_CELL
+};
 
 static const uint8_t first_cell[ENERGY_STATES + 1] = {
     [ENERGY_RECEIVE] = 0,        [ENERGY_LISTEN] = ENERGY_CAUSES, [ENERGY_TRANSMIT] = 2 * ENERGY_CAUSES,
@@ -70,6 +75,8 @@ int energy_make(struct energy *energy, const struct energy_config *config, uint3
                      [ENERGY_CPU] = microwatts(profile->cpu - profile->cpu_idle, volts),
                      [ENERGY_SENSING] = microwatts(profile->sensing, volts)},
         .cpu_idle_uw = microwatts(profile->cpu_idle, volts),
+        .wake_period = config->wake_period,
+        .wake_length = config->wake_length,
         .battery_pj = llround(config->battery_j * PJ_PER_J),
         .first_dead = NOBODY,
         .last_dead = NOBODY,
@@ -115,23 +122,58 @@ static void die(struct energy *energy, uint32_t index, sim_time time)
     energy->last_dead = index;
 }
 
+/* Of the time before `time`, how much lies in wake windows. */
+static uint64_t in_windows(const struct energy *energy, sim_time time)
+{
+    const uint64_t last = time % energy->wake_period;
+    return time / energy->wake_period * energy->wake_length + (last < energy->wake_length ? last : energy->wake_length);
+}
+
+/* The part of [mote->since, time) in which the radio, as it is, listens in wake windows. */
+static uint64_t listened(const struct energy *energy, const struct energy_mote *mote, sim_time time)
+{
+    const bool wakes = mote->state == ENERGY_SLEEP && energy->wake_period > 0;
+    return wakes ? in_windows(energy, time) - in_windows(energy, mote->since) : 0;
+}
+
+/* What the mote uses until `time` if its radio stays as it is, pJ. */
+static int64_t use_until(const struct energy *energy, const struct energy_mote *mote, sim_time time)
+{
+    const uint64_t listening = listened(energy, mote, time), rest = time - mote->since - listening;
+    return (int64_t)(rest * radio_power(energy, mote->state) + listening * radio_power(energy, ENERGY_LISTEN));
+}
+
+/* That comes to pass, and the battery lasts. */
+static void pass(const struct energy *energy, struct energy_mote *mote, sim_time time)
+{
+    const uint64_t listening = listened(energy, mote, time);
+    mote->left_pj -= use_until(energy, mote, time);
+    mote->time_us[mote->cell] += time - mote->since - listening;
+    mote->time_us[IDLE_LISTEN_CELL] += listening;
+    mote->since = time;
+}
+
+/* The last microsecond until which the battery lasts, if not until `time`: by bisection, once in a mote's life. */
+static sim_time end_of(const struct energy *energy, const struct energy_mote *mote, sim_time time)
+{
+    sim_time lasts = mote->since;
+    while (time - lasts > 1) {
+        const sim_time middle = lasts + (time - lasts) / 2;
+        *(use_until(energy, mote, middle) <= mote->left_pj ? &lasts : &time) = middle;
+    }
+    return lasts;
+}
+
 /* Account for the radio's state until `time`. */
 static void settle(struct energy *energy, uint32_t index, sim_time time)
 {
     struct energy_mote *mote = mote_of(energy, index);
-    uint64_t elapsed = time - mote->since;
-    const uint32_t power = radio_power(energy, mote->state);
-    const int64_t used_pj = (int64_t)(elapsed * power);
-    if (used_pj > mote->left_pj && power > 0) {
-        elapsed = (uint64_t)mote->left_pj / power;
-        mote->time_us[mote->cell] += elapsed;
-        mote->left_pj -= (int64_t)(elapsed * power);
-        die(energy, index, mote->since + elapsed);
-        return;
+    if (use_until(energy, mote, time) <= mote->left_pj) {
+        pass(energy, mote, time);
+    } else {
+        pass(energy, mote, end_of(energy, mote, time));
+        die(energy, index, mote->since);
     }
-    mote->time_us[mote->cell] += elapsed;
-    mote->left_pj -= used_pj;
-    mote->since = time;
 }
 
 void energy_radio(struct energy *energy, uint32_t index, sim_time time, enum energy_state state,
@@ -204,9 +246,7 @@ static struct energy_mote settled(const struct energy *energy, uint32_t index, s
 {
     struct energy_mote mote = *mote_of(energy, index);
     if (!mote.dead && now > mote.since) {
-        const uint64_t elapsed = now - mote.since;
-        mote.time_us[mote.cell] += elapsed;
-        mote.left_pj -= (int64_t)(elapsed * radio_power(energy, mote.state));
+        pass(energy, &mote, now);
     }
     return mote;
 }

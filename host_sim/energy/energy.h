@@ -1,10 +1,11 @@
 /* What each mote has used, by what it was doing (state) and what for (cause), and the batteries that empty.
  *
  * The radio is in one state at any time, and draws that state's power from the change to it until the next; the idle
- * processor draws beside it. Sensing and processing come on top, charged whole when they begin. The ledger counts
- * microseconds, and powers are whole microwatts, so all sums are exact in integers (1 uW for 1 us is 1 pJ).
+ * processor draws beside it. One that sleeps may open for a short window once in a period: then it listens, idly. Sensing and processing come on
+ * top, charged whole when they begin. The ledger counts microseconds, and powers are whole microwatts, so all sums are exact in integers (1 uW for 1
+ * us is 1 pJ).
  *
- * A change of state costs a few ns; a mote takes sizeof(struct energy_mote) = 240 bytes. */
+ * A change of state costs a few ns, however many windows have passed; a mote takes sizeof(struct energy_mote) = 272 bytes. */
 #ifndef MOTEHOUND_SIM_ENERGY_H
 #define MOTEHOUND_SIM_ENERGY_H
 
@@ -27,11 +28,12 @@ enum energy_state {
 
 enum energy_cause {
     ENERGY_IDLE,         /* nothing: waiting, sleeping */
-    ENERGY_LOCALISATION, /* sampling, computing a position, asking for readings */
-    ENERGY_CLUSTERING,
-    ENERGY_REPORTING, /* carrying readings and positions to where they are wanted */
-    ENERGY_ROUTING,   /* finding ways and neighbours */
-    ENERGY_TIME,      /* keeping clocks together */
+    ENERGY_LOCALISATION, /* sampling, computing a position */
+    ENERGY_MEASURING,    /* asking for readings, and answers */
+    ENERGY_CLUSTERING,   /* forming clusters, handing tracks over */
+    ENERGY_REPORTING,    /* carrying readings and positions to where they are wanted */
+    ENERGY_ROUTING,      /* finding ways and neighbours */
+    ENERGY_TIME,         /* keeping clocks together */
     ENERGY_CAUSES
 };
 
@@ -54,7 +56,9 @@ struct energy_mote {
 
 struct energy_config {
     const struct energy_profile *profile;
-    double power_dbm;  /* of the radio */
+    double power_dbm; /* of the radio */
+    sim_time wake_period,
+        wake_length;   /* a radio that sleeps listens in [k period, k period + length); 0, 0: it does not */
     double battery_j;  /* 0: all motes are on mains; at most 1e6 */
     uint32_t on_mains; /* the one mote that has no battery and is left out of the totals; UINT32_MAX: none */
     /* Mote i's part of the ledger is its order[i]-th, a permutation that outlives it: those whose radios change together lie side by
@@ -70,6 +74,7 @@ struct energy {
     uint32_t power_uw[ENERGY_STATES + 1]; /* on top of cpu_idle_uw, which every state but off draws */
     uint32_t cpu_idle_uw;
     int64_t battery_pj;
+    sim_time wake_period, wake_length;
     struct event_queue checks; /* when each battery could be empty at the earliest */
     uint32_t first_dead;       /* a list, through next_dead, of those not yet told */
     uint32_t last_dead;

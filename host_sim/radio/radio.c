@@ -52,12 +52,14 @@ enum ack_state { ACK_NONE, ACK_TURNING, ACK_SENDING };
 struct radio_mote {
     sim_time due;         /* of the event that the MAC waits for: others are out of date */
     sim_time awake;       /* listens since, if it does */
+    sim_time powered;     /* since when it has not been off */
     uint32_t first, last; /* of its queue; NONE, NONE: empty */
     struct csma csma;
     uint32_t flight; /* being sent, frame or acknowledgement */
     uint32_t ack_to;
     uint16_t queued;
-    uint16_t signals; /* that arrive above the sensitivity, if states are shown */
+    uint16_t signals; /* that arrive above the sensitivity, if states are shown ... */
+    uint16_t caught;  /* ... of these, begun in a wake window */
     uint8_t power, mac, ack, mac_cause, ack_cause, signal_cause;
     uint8_t shown, shown_cause; /* as last told */
 };
@@ -72,6 +74,10 @@ struct radio_config radio_config_of(const struct scenario *scenario, double rang
                                               .good_s = scenario->radio.burst_good_s,
                                               .bad_s = scenario->radio.burst_bad_s},
                                   .queue = (unsigned)scenario->radio.queue};
+    if (scenario->radio.wake_period_s > 0) {
+        config.wake_period = (sim_time)llround(scenario->radio.wake_period_s * SIM_TIME_PER_S);
+        config.wake_length = (sim_time)llround(scenario->radio.wake_length_s * SIM_TIME_PER_S);
+    }
     struct radio_profile *profile = &config.profile;
     faults_make(&config.channel.faults, scenario, 0); /* those of the channel are not drawn */
     if (!profile->contention) {
@@ -244,6 +250,13 @@ static bool listens(const struct radio_mote *mote)
     return mote->power == RADIO_POWER_ON || (mote->power == RADIO_POWER_ASLEEP && (mote->mac || mote->ack));
 }
 
+/* A radio that sleeps is open. */
+static bool wakes(const struct radio *radio, sim_time time)
+{
+    const struct radio_config *config = &radio->config;
+    return config->wake_period > 0 && time % config->wake_period < config->wake_length;
+}
+
 /* A radio that waits to send, or for an answer, listens for its frame's cause. */
 static void show(const struct run *run, uint32_t index)
 {
@@ -253,7 +266,7 @@ static void show(const struct run *run, uint32_t index)
     }
     const enum radio_state state = mote->power == RADIO_POWER_OFF                         ? RADIO_OFF
                                    : mote->mac == MAC_SENDING || mote->ack == ACK_SENDING ? RADIO_TRANSMIT
-                                   : !listens(mote)                                       ? RADIO_SLEEP
+                                   : !listens(mote) && mote->caught == 0                  ? RADIO_SLEEP
                                    : mote->signals > 0                                    ? RADIO_RECEIVE
                                                                                           : RADIO_LISTEN;
     const uint8_t own = mote->ack ? mote->ack_cause : mote->mac ? mote->mac_cause : 0;
@@ -339,9 +352,10 @@ static double power_between(const struct radio *radio, uint32_t a, uint32_t b)
     return propagation_power(&radio->propagation, places_at(&radio->places, a), places_at(&radio->places, b));
 }
 
-/* All that may hear a transmission begin or cease to receive it. */
-static void show_signal(const struct run *run, uint32_t sender, uint8_t cause, int change)
+/* All that may hear a transmission, which started at `start`, begin or cease to receive it. */
+static void show_signal(const struct run *run, uint32_t sender, sim_time start, uint8_t cause, int change)
 {
+    const int caught = wakes(run->radio, start) ? change : 0;
     if (!run->sink->state) {
         return;
     }
@@ -350,6 +364,7 @@ static void show_signal(const struct run *run, uint32_t sender, uint8_t cause, i
     for (uint32_t i = 0; i < count; i++) {
         struct radio_mote *mote = &run->radio->motes[receivers[i]];
         mote->signals = (uint16_t)(mote->signals + change);
+        mote->caught = (uint16_t)(mote->caught + caught);
         mote->signal_cause = change > 0 ? cause : mote->signal_cause;
         show(run, receivers[i]);
     }
@@ -455,7 +470,9 @@ static enum loss_reason look_closer(const struct radio *radio, const struct flig
     if (mote->power == RADIO_POWER_OFF || flight->cut) {
         return LOSS_DEAD;
     }
-    if (!listens(mote) || mote->awake > flight->start) {
+    const bool awake = listens(mote) && mote->awake <= flight->start;
+    const bool woken = mote->powered <= flight->start && wakes(radio, flight->start);
+    if (!awake && !woken) {
         return LOSS_ASLEEP;
     }
     if (meetings && was_deaf(radio, receiver, meetings)) {
@@ -621,7 +638,7 @@ static void launch(const struct run *run, uint32_t sender, uint32_t destination,
     }
     radio->motes[sender].flight = index;
     push(radio, flight.end, EVENT(EVENT_END, index));
-    show_signal(run, sender, cause, 1);
+    show_signal(run, sender, run->now, cause, 1);
 }
 
 static void announce(const struct run *run, const struct radio_frame *frame)
@@ -712,7 +729,7 @@ static void flight_ends(const struct run *run, uint32_t index)
     const struct flight flight = radio->air.flights[index];
     struct meetings meetings;
     find_meetings(run, &flight, index, &meetings);
-    show_signal(run, flight.sender, flight.cause, -1);
+    show_signal(run, flight.sender, flight.start, flight.cause, -1);
     if (!flight.cut) {
         radio->motes[flight.sender].flight = NONE;
     }
@@ -763,7 +780,7 @@ static void take_off(const struct run *run, uint32_t index)
     }
     push(radio, run->now + air_time(radio, frame), EVENT(EVENT_LANDING, index));
     enter(run, frame->sender, MAC_SENDING, frame->cause);
-    show_signal(run, frame->sender, frame->cause, 1);
+    show_signal(run, frame->sender, run->now, frame->cause, 1);
     announce(run, frame);
 }
 
@@ -782,7 +799,7 @@ static void land(const struct run *run, uint32_t index)
                                   .cut = radio->motes[frame->sender].power == RADIO_POWER_OFF};
     const bool received = deliver(run, &flight, NULL);
     free_frame(radio, index);
-    show_signal(run, flight.sender, flight.cause, -1);
+    show_signal(run, flight.sender, flight.start, flight.cause, -1);
     if (!flight.cut) {
         enter(run, flight.sender, MAC_IDLE, 0);
         if (flight.destination != RADIO_ALL && !received) {
@@ -847,6 +864,9 @@ static void switch_power(const struct run *run, uint32_t index, enum radio_power
     const bool listened = listens(mote);
     if (power == RADIO_POWER_OFF) {
         drop_all(run->radio, mote);
+    }
+    if (mote->power == RADIO_POWER_OFF) {
+        mote->powered = run->now;
     }
     mote->power = (uint8_t)power;
     if (!listened && listens(mote)) {

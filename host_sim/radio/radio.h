@@ -9,6 +9,7 @@
  * Each frame is judged so by itself: of two that overlap the stronger one is received if it is stronger by the capture ratio, whichever came
  * first. Transmissions that arrive more than 10 dB below the noise floor are not felt. A frame sent to one is acknowledged and repeated if the
  * acknowledgement does not come, also if it was the acknowledgement that was lost: the addressee's radio knows a frame by its number and hands it over once.
+ * A radio that sleeps may open for a short window once in a period: what begins then it receives to its end, and acknowledges.
  * Profile `ideal` knows none of this: a frame goes out at once and all in range hear it; one that is sent to one needs no
  * acknowledgement, and a radio's frames follow each other without a gap.
  *
@@ -40,6 +41,8 @@ struct radio_config {
     struct propagation_config propagation;
     struct channel_config channel;
     unsigned queue; /* frames a radio holds, the one being sent included; further ones are refused */
+    sim_time wake_period,
+        wake_length; /* one that sleeps is open in [k period, k period + length), k = 0, 1 ...; 0, 0: it is not */
 };
 
 /* What scenario->radio says; `range_m` stands in for its range. HUGE_VAL: all hear all, whatever the propagation. */
@@ -51,7 +54,8 @@ double radio_nominal_range_m(const struct scenario *scenario);
 /* What a radio does; draws power accordingly. */
 enum radio_state { RADIO_SLEEP, RADIO_LISTEN, RADIO_RECEIVE, RADIO_TRANSMIT, RADIO_OFF };
 
-/* What a mote asks of its radio. Asleep it does not hear, but wakes to send and goes back to sleep; what is off drops all it had. */
+/* What a mote asks of its radio. Asleep it does not hear, but for what begins in a wake window; it wakes to send and goes back to sleep. What is off
+ * drops all it had. */
 enum radio_power { RADIO_POWER_ON, RADIO_POWER_ASLEEP, RADIO_POWER_OFF };
 
 /* Who is told, in order of time. Any of the functions may be NULL. bytes and receivers are valid during the call. */
@@ -66,7 +70,8 @@ struct radio_sink {
     /* What became of a frame: once for each, a sender's in the order of sending, but for those of a radio that was switched off. */
     void (*sent)(void *context, sim_time time, uint32_t sender, enum mh_sent outcome);
     /* A radio changes its state, for a frame of that cause; 0 when it rests. Before the first call all listen. A radio receives while the
-     * signal of any frame is above its sensitivity, whoever it is for. */
+     * signal of any frame is above its sensitivity, whoever it is for. One that sleeps sleeps through its wake windows too, as long as no frame
+     * begins in them: so windows are no changes. */
     void (*state)(void *context, sim_time time, uint32_t mote, enum radio_state state, uint8_t cause);
 };
 

@@ -165,6 +165,10 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
             "%s: radio.sensitivity_dbm: expected less than radio.power_dbm - radio.reference_loss_db = %g, found %g",
             name, loudest_dbm, sensitivity_dbm);
     }
+    if (scenario->radio.wake_period_s > 0 && scenario->radio.wake_length_s >= scenario->radio.wake_period_s) {
+        return fail(error, error_size, "%s: radio.wake_length_s: expected less than radio.wake_period_s = %g, found %g",
+                    name, scenario->radio.wake_period_s, scenario->radio.wake_length_s);
+    }
     if (scenario->energy.battery_j > 0 && strcmp(scenario->energy.profile, "none") == 0) {
         return fail(error, error_size, "%s: energy.battery_j: expected 0 for energy.profile none, found %g", name,
                     scenario->energy.battery_j);

@@ -69,6 +69,8 @@ const struct scenario_key scenario_keys[] = {
     {"radio.retries", KEY_COUNT, AT(radio.retries), "-1", -1, 100, NULL, "of a frame that is not acknowledged; -1 for the profile's"},
     {"radio.backoffs", KEY_COUNT, AT(radio.backoffs), "-1", -1, 1e9, NULL, "after the first, before a frame is given up; -1 for the profile's"},
     {"radio.queue", KEY_COUNT, AT(radio.queue), "8", 1, 1000, NULL, "frames a radio holds, the one being sent included"},
+    {"radio.wake_period_s", KEY_NUMBER, AT(radio.wake_period_s), "0", 0, 60, NULL, "a radio that sleeps opens for radio.wake_length_s once in this period, all at multiples of it; 0: it is deaf"},
+    {"radio.wake_length_s", KEY_NUMBER, AT(radio.wake_length_s), "0.01", 1e-4, 60, NULL, "frames that begin within are received"},
     {"faults.every_s", KEY_NUMBER, AT(faults.every_s), "0", 0, 1e6, NULL, "all faults come again with this period and hit other motes; 0 for once"},
     {"faults.stuck_share", KEY_NUMBER, AT(faults.stuck.share), "0", 0, 1, NULL, "share of the motes whose sensor repeats its last reading"},
     {"faults.stuck_from_s", KEY_NUMBER, AT(faults.stuck.from_s), "0", 0, 1e6, NULL, "from then on ..."},

@@ -102,6 +102,7 @@ struct scenario {
         double power_dbm, sensitivity_dbm;            /* sensitivity 0: the profile's */
         int64_t retries, backoffs;                    /* -1: the profile's */
         int64_t queue;                                /* frames a radio holds */
+        double wake_period_s, wake_length_s;          /* of a radio that sleeps; period 0: it does not wake */
     } radio;
     struct {
         double every_s; /* all faults come again with this period, and then hit other motes; 0: once */

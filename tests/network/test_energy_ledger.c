@@ -16,6 +16,7 @@ enum { CHANGES_MAX = 2000000 };
 
 struct draw {
     double joules, watts;
+    double woken_watts; /* in wake windows, if the radio sleeps; else 0 */
     sim_time since;
 };
 
@@ -23,6 +24,7 @@ static struct draw *draws;
 static sim_time last;
 static long changes, motes, dead;
 static double battery_j, power_dbm;
+static sim_time wake_period, wake_length;
 static bool contends; /* radios wait for a free channel, and listen for a frame meanwhile */
 static volatile sig_atomic_t stop;
 static char line[300];
@@ -56,6 +58,20 @@ static double idle_watts(const struct energy *energy)
     return 1e-3 * energy->profile->volts * energy->profile->cpu_idle;
 }
 
+/* Through the wake windows one by one. */
+static double drawn_until(const struct draw *draw, sim_time time)
+{
+    double joules = draw->watts * (double)(time - draw->since) / SIM_TIME_PER_S;
+    if (draw->woken_watts > 0) {
+        for (sim_time open = draw->since / wake_period * wake_period; open < time; open += wake_period) {
+            const sim_time begin = open > draw->since ? open : draw->since;
+            const sim_time end = open + wake_length < time ? open + wake_length : time;
+            joules += end > begin ? (draw->woken_watts - draw->watts) * (double)(end - begin) / SIM_TIME_PER_S : 0;
+        }
+    }
+    return joules;
+}
+
 static void count_change(sim_time time)
 {
     last = time > last ? time : last;
@@ -69,6 +85,8 @@ int __wrap_energy_make(struct energy *energy, const struct energy_config *config
     last = 0;
     changes = 0;
     power_dbm = config->power_dbm;
+    wake_period = config->wake_period;
+    wake_length = config->wake_length;
     return __real_energy_make(energy, config, count);
 }
 
@@ -83,8 +101,10 @@ void __wrap_energy_radio(struct energy *energy, uint32_t mote, sim_time time, en
     } else {
         TEST_ASSERT_TRUE(cause == ENERGY_IDLE || (state == ENERGY_LISTEN && contends));
     }
-    draw->joules += draw->watts * (double)(time - draw->since) / SIM_TIME_PER_S;
+    draw->joules += drawn_until(draw, time);
     draw->since = time;
+    draw->woken_watts =
+        state == ENERGY_SLEEP && wake_period > 0 ? watts(energy, ENERGY_LISTEN) + idle_watts(energy) : 0;
     draw->watts = watts(energy, state) + (state == ENERGY_OFF ? 0 : idle_watts(energy));
     count_change(time);
     __real_energy_radio(energy, mote, time, state, cause);
@@ -129,7 +149,7 @@ static void check(const struct energy *energy, uint32_t mote)
         }
         causes += of_cause;
     }
-    const double integral = draw->joules + draw->watts * (double)(last - draw->since) / SIM_TIME_PER_S;
+    const double integral = draw->joules + drawn_until(draw, last);
     agree(mote, "sums over states and causes", states, causes, 1e-9 * states);
     agree(mote, "sum and total", states, energy_used_j(energy, mote, last), 1e-9 * states);
     if (energy_is_dead(energy, mote)) {
@@ -153,6 +173,8 @@ void __wrap_energy_free(struct energy *energy)
 
 static struct observer observer;
 
+static bool duty_cycled; /* nodes do not relay, and sleep but for wake windows */
+
 static void run(const char *name, const char *path, const char *profile)
 {
     char error[500] = "no memory";
@@ -162,6 +184,11 @@ static void run(const char *name, const char *path, const char *profile)
     TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &scenario, error, sizeof error), error);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, "energy.profile", profile, error, sizeof error), error);
+    if (duty_cycled) {
+        TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "network.protocol", "direct", error, sizeof error));
+        TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "radio.wake_period_s", "0.25", error, sizeof error));
+        TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "radio.profile", "802154", error, sizeof error));
+    }
     scenario.energy.battery_j = battery_j;
     contends = strcmp(scenario.radio.profile, "ideal") != 0;
     stop = 0;
@@ -188,6 +215,7 @@ static void run_micaz(void *context, const char *name, const char *path)
 void setUp(void)
 {
     motes = dead = 0;
+    duty_cycled = false;
     observer = (struct observer){0};
 }
 void tearDown(void) {}
@@ -204,6 +232,18 @@ static void all_scenarios_add_up_while_motes_die(void)
 {
     battery_j = 0.5;
     TEST_ASSERT_TRUE(scenario_list(run_micaz, NULL) >= 4);
+    TEST_ASSERT_TRUE(dead > 1000);
+}
+
+static void duty_cycles_add_up(void)
+{
+    char error[500], path[SCENARIO_PATH_MAX];
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_find("luo_exp1", path, error, sizeof error), error);
+    duty_cycled = true;
+    battery_j = 0;
+    run("luo_exp1", path, "mica2");
+    battery_j = 0.05;
+    run("luo_exp1", path, "micaz");
     TEST_ASSERT_TRUE(dead > 1000);
 }
 
@@ -257,6 +297,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(all_scenarios_add_up);
     RUN_TEST(all_scenarios_add_up_while_motes_die);
+    RUN_TEST(duty_cycles_add_up);
     RUN_TEST(the_dead_are_silent);
     port_exit(UNITY_END() > 0);
     return 0;

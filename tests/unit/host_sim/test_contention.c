@@ -428,6 +428,109 @@ static void states_add_up(void)
     TEST_ASSERT_TRUE(time_in(2, RADIO_LISTEN, 20000) == 20000 - 1440 - 352);
 }
 
+enum { WAKE_PERIOD = 250000, WAKE_LENGTH = 10000 };
+
+static struct radio_config waking(struct radio_config config)
+{
+    config.wake_period = WAKE_PERIOD;
+    config.wake_length = WAKE_LENGTH;
+    return config;
+}
+
+/* The first bit, 320 us after the frame came, decides: into a window, or one microsecond beside it. Mote 2 sleeps from mid-frame, mote 3 is switched on
+ * within the window but after the first bit. */
+static void who_sleeps_hears_what_begins_in_a_window(void)
+{
+    const struct radio_config config = waking(at_once(disc("802154")));
+    const double x_m[] = {0, 50, 60, 70};
+    make(&config, x_m, 4);
+    radio_power(&radio, 0, 1, RADIO_POWER_ASLEEP);
+    radio_power(&radio, 0, 3, RADIO_POWER_OFF);
+    const sim_time window = 3 * WAKE_PERIOD;
+    send(window - 321, 0, RADIO_ALL, 30);
+    radio_power(&radio, window + 100, 2, RADIO_POWER_ASLEEP);
+    run(window + 8000);
+    TEST_ASSERT_EQUAL_UINT(0, told.heard[1] + told.heard[2]);
+    TEST_ASSERT_EQUAL_UINT(2, radio.counters.lost[LOSS_ASLEEP]);
+    radio_power(&radio, window + 9999 + 1, 3, RADIO_POWER_ASLEEP);
+    send(window + 9999 - 320, 0, RADIO_ALL, 30);
+    run(window + 20000);
+    TEST_ASSERT_EQUAL_UINT(1, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(1, told.heard[2]);
+    TEST_ASSERT_EQUAL_UINT(0, told.heard[3]);
+    TEST_ASSERT_EQUAL_UINT(3, radio.counters.lost[LOSS_ASLEEP]);
+    send(2 * window - 320, 0, RADIO_ALL, 30);
+    radio_power(&radio, 2 * window + 500, 2, RADIO_POWER_ON);
+    radio_power(&radio, 2 * window + 600, 3, RADIO_POWER_OFF);
+    radio_power(&radio, 2 * window + 700, 3, RADIO_POWER_ON);
+    run(2 * window + 8000);
+    TEST_ASSERT_EQUAL_UINT(2, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(2, told.heard[2]);
+    TEST_ASSERT_EQUAL_UINT(0, told.heard[3]);
+    send(2 * window + WAKE_LENGTH - 320, 0, RADIO_ALL, 30);
+    run(3 * window - 1000);
+    TEST_ASSERT_EQUAL_UINT(2, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(3, told.heard[2]); /* awake */
+}
+
+/* It receives to the end, long after the window, acknowledges, and sleeps again; windows without a frame are no changes. */
+static void who_is_woken_acknowledges(void)
+{
+    const struct radio_config config = waking(at_once(disc("802154")));
+    const double x_m[] = {0, 50, 60};
+    make(&config, x_m, 3);
+    radio_power(&radio, 0, 1, RADIO_POWER_ASLEEP);
+    radio_power(&radio, 0, 2, RADIO_POWER_ASLEEP);
+    send(WAKE_PERIOD + 9999 - 320, 0, 1, 30);
+    TEST_ASSERT_EQUAL_INT(0, radio_run(&radio, 8 * WAKE_PERIOD, &sink_with_states));
+    TEST_ASSERT_EQUAL_UINT(1, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(1, told.outcomes[0][MH_SENT_OK]);
+    TEST_ASSERT_EQUAL_UINT(WAKE_PERIOD + 9999 + 1440 + 192 + 352, told.last_sent);
+    TEST_ASSERT_TRUE(time_in(1, RADIO_RECEIVE, 8 * WAKE_PERIOD) == 1440);
+    TEST_ASSERT_TRUE(time_in(1, RADIO_TRANSMIT, 8 * WAKE_PERIOD) == 352);
+    TEST_ASSERT_TRUE(time_in(1, RADIO_LISTEN, 8 * WAKE_PERIOD) == 192);
+    TEST_ASSERT_TRUE(time_in(1, RADIO_SLEEP, 8 * WAKE_PERIOD) == 8 * WAKE_PERIOD - 1440 - 352 - 192);
+    TEST_ASSERT_TRUE(time_in(2, RADIO_RECEIVE, 8 * WAKE_PERIOD) == 1440); /* not the acknowledgement */
+    TEST_ASSERT_TRUE(time_in(2, RADIO_SLEEP, 8 * WAKE_PERIOD) == 8 * WAKE_PERIOD - 1440);
+}
+
+static unsigned begun_in_windows;
+
+static void count_windows(void *context, sim_time time, uint32_t sender, uint32_t destination, const uint8_t *frame,
+                          size_t length)
+{
+    on_air(context, time, sender, destination, frame, length);
+    begun_in_windows += time % WAKE_PERIOD < WAKE_LENGTH;
+}
+
+/* Frames at random times: the share of the windows is heard. Two hidden senders collide in windows as they do else. */
+static void windows_are_heard_in_their_share(void)
+{
+    enum { FRAMES = 20000, SPACE = 20000 };
+    const struct random_stream stream = random_stream(7, RANDOM_DEPLOYMENT);
+    const struct radio_sink counting = {.on_air = count_windows, .heard = heard, .sent = sent};
+    const struct radio_config config = waking(disc("802154"));
+    const double x_m[] = {0, 90, 180};
+    const double share = (double)WAKE_LENGTH / WAKE_PERIOD;
+    make(&config, x_m, 3);
+    begun_in_windows = 0;
+    radio_power(&radio, 0, 1, RADIO_POWER_ASLEEP);
+    for (unsigned i = 0; i < FRAMES; i++) {
+        send(i * SPACE + random_bits(stream, i) % SPACE, 0, RADIO_ALL, 30);
+    }
+    TEST_ASSERT_EQUAL_INT(0, radio_run(&radio, SIM_TIME_NEVER, &counting));
+    TEST_ASSERT_EQUAL_UINT(FRAMES, told.on_air[0]);
+    TEST_ASSERT_EQUAL_UINT(begun_in_windows, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(FRAMES - begun_in_windows, radio.counters.lost[LOSS_ASLEEP]);
+    TEST_ASSERT_TRUE(fabs(begun_in_windows - FRAMES * share) < 4 * sqrt(FRAMES * share));
+    const sim_time window = FRAMES * (sim_time)SPACE / WAKE_PERIOD * WAKE_PERIOD + 2 * WAKE_PERIOD;
+    send(window, 0, RADIO_ALL, 100);
+    send(window, 2, RADIO_ALL, 100);
+    run(SIM_TIME_NEVER);
+    TEST_ASSERT_EQUAL_UINT(begun_in_windows, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(2, radio.counters.lost[LOSS_COLLISION]);
+}
+
 /* Random traffic of `motes` motes on a line; a digest of all that the radio told. */
 static uint64_t busy_network(const char *profile, uint64_t seed, sim_time step, bool states)
 {
@@ -497,6 +600,8 @@ static void random_life(void)
         unsigned handed[MOTES] = {0};
         config.channel.loss = 0.1;
         config.queue = 4;
+        config.wake_period = p == 1 ? 20000 : 0;
+        config.wake_length = p == 1 ? 5000 : 0;
         for (unsigned i = 0; i < MOTES; i++) {
             x_m[i] = 500 * random_uniform(stream, i);
         }
@@ -560,6 +665,9 @@ int main(void)
     RUN_TEST(sleeping_and_dead_motes_hear_nothing);
     RUN_TEST(frame_of_a_mote_that_dies_is_a_wreck);
     RUN_TEST(states_add_up);
+    RUN_TEST(who_sleeps_hears_what_begins_in_a_window);
+    RUN_TEST(who_is_woken_acknowledges);
+    RUN_TEST(windows_are_heard_in_their_share);
     RUN_TEST(runs_are_repeatable);
     RUN_TEST(random_life);
     port_exit(UNITY_END() > 0);

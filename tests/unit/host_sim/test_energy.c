@@ -20,14 +20,20 @@ static uint32_t told[TOLD];
 static sim_time told_at[TOLD];
 static int told_count;
 
-static void make(const char *profile, double battery_j)
+static void make_waking(const char *profile, double battery_j, sim_time period, sim_time length)
 {
     static const uint32_t order[MOTES] = {3, 6, 7, 1, 0, 5, 2, 4};
-    const struct energy_config config = {
-        .profile = energy_profile_find(profile), .battery_j = battery_j, .on_mains = SINK, .order = order};
+    const struct energy_config config = {.profile = energy_profile_find(profile),
+                                         .battery_j = battery_j,
+                                         .wake_period = period,
+                                         .wake_length = length,
+                                         .on_mains = SINK,
+                                         .order = order};
     TEST_ASSERT_EQUAL_INT(0, energy_make(&energy, &config, MOTES));
     told_count = 0;
 }
+
+static void make(const char *profile, double battery_j) { make_waking(profile, battery_j, 0, 0); }
 
 void setUp(void) { make("mica2", 0); }
 void tearDown(void) { energy_free(&energy); }
@@ -134,6 +140,92 @@ static void whatever_happens_all_adds_up(void)
     }
 }
 
+enum { PERIOD = 250000, LENGTH = 10000 };
+
+/* Time in wake windows, one by one. */
+static sim_time time_in_windows(sim_time from, sim_time to)
+{
+    sim_time sum = 0;
+    for (sim_time open = from / PERIOD * PERIOD; open < to; open += PERIOD) {
+        const sim_time begin = open > from ? open : from, end = open + LENGTH < to ? open + LENGTH : to;
+        sum += end > begin ? end - begin : 0;
+    }
+    return sum;
+}
+
+/* Random changes among sleep and other states, with steps from a microsecond to many periods, each once ending on the edge of a window. */
+static void wake_windows_are_listened_through(void)
+{
+    const struct random_stream stream = random_stream(6, RANDOM_RADIO_LOSS);
+    const double watts[] = {0.0015, 0.009, 0.03, 0.081};
+    uint64_t draw = 0;
+    tearDown();
+    make_waking("mica2", 0, PERIOD, LENGTH);
+    for (uint32_t mote = 0; mote < MOTES; mote++) {
+        sim_time now = 0, asleep = 0, woken = 0, listening = 0;
+        double integral = 0;
+        int state = ENERGY_OFF;
+        for (int i = 0; i < 3000; i++) {
+            sim_time next = now + (sim_time)exp(16 * random_uniform(stream, draw++));
+            next = i % 5 == 0 ? (next / PERIOD + 1) * PERIOD + (i % 2 ? LENGTH : 0) : next;
+            if (state == ENERGY_SLEEP) {
+                const sim_time open = time_in_windows(now, next);
+                woken += open;
+                asleep += next - now - open;
+                integral += 1e-6 * ((double)open * 0.009 + (double)(next - now - open) * 0.0015);
+            } else if (state != ENERGY_OFF) {
+                integral += 1e-6 * (double)(next - now) * watts[state];
+                listening += state == ENERGY_LISTEN ? next - now : 0;
+            }
+            integral += state != ENERGY_OFF ? 4.5e-11 * (double)(next - now) : 0;
+            now = next;
+            const int choice = (int)(8 * random_uniform(stream, draw++));
+            state = choice > ENERGY_TRANSMIT ? ENERGY_SLEEP : choice;
+            state = i % 100 == 99 ? ENERGY_OFF : state;
+            energy_radio(&energy, mote, now, (enum energy_state)state, ENERGY_IDLE);
+        }
+        NEAR(integral, sum_of(mote, now));
+        NEAR(integral, energy_used_j(&energy, mote, now));
+        NEAR(1e-6 * 0.0015 * (double)asleep, joules[ENERGY_SLEEP][ENERGY_IDLE]);
+        NEAR(1e-6 * 0.009 * (double)(listening + woken), joules[ENERGY_LISTEN][ENERGY_IDLE]);
+        TEST_ASSERT_TRUE(asleep > 1e8 && woken > 1e6);
+    }
+}
+
+/* In a window 9.045 uJ a millisecond, else 1.545: followed window by window until the battery is empty. */
+static void a_battery_empties_between_windows_and_in_them(void)
+{
+    static bool in_window[2];
+    for (int i = 0; i < 40; i++) {
+        const uint64_t battery_pj = UINT64_C(100000000000) + (uint64_t)i * 16384000 * 17;
+        const sim_time begin = (sim_time)i * 7001;
+        tearDown();
+        make_waking("mica2", (double)battery_pj / 1e12, PERIOD, LENGTH);
+        energy_radio(&energy, 0, begin, ENERGY_SLEEP, ENERGY_IDLE);
+        uint64_t left = battery_pj;
+        sim_time now = begin;
+        for (;;) {
+            const sim_time phase = now % PERIOD, edge = now - phase + (phase < LENGTH ? LENGTH : PERIOD);
+            const uint64_t power = phase < LENGTH ? 9045 : 1545;
+            if ((edge - now) * power > left) {
+                now += left / power;
+                in_window[phase < LENGTH] = true;
+                break;
+            }
+            left -= (edge - now) * power;
+            now = edge;
+        }
+        while (told_count == 0) {
+            const sim_time next = energy_next(&energy);
+            energy_run(&energy, next, tell, NULL);
+            TEST_ASSERT_TRUE(told_count == 0 || next - told_at[0] <= 1000);
+        }
+        TEST_ASSERT_EQUAL_UINT64(now, told_at[0]);
+        TEST_ASSERT_TRUE(fabs(sum_of(0, now + 5000000) - (double)battery_pj / 1e12) < 1e-7);
+    }
+    TEST_ASSERT_TRUE(in_window[0] && in_window[1]);
+}
+
 /* Listening takes 9.045 mW. */
 static void a_battery_empties_at_its_time(void)
 {
@@ -223,7 +315,7 @@ static void totals_leave_out_the_mote_on_mains(void)
         }
     }
     NEAR(7 * 3 * 0.081045, sum);
-    NEAR(2 * 3 * 0.081, totals.joules[ENERGY_TRANSMIT][ENERGY_IDLE]); /* motes 0 and 6 */
+    NEAR(3 * 0.081, totals.joules[ENERGY_TRANSMIT][ENERGY_IDLE]); /* mote 0 */
     TEST_ASSERT_EQUAL_UINT32(0, totals.dead);
     TEST_ASSERT_TRUE(isnan(totals.lifetime_s) && isnan(totals.lifetime_half_s));
 }
@@ -261,7 +353,7 @@ static void profiles_make_sense(void)
     }
 }
 
-static void a_mote_takes_little_memory(void) { TEST_ASSERT_TRUE(sizeof(struct energy_mote) <= 250); }
+static void a_mote_takes_little_memory(void) { TEST_ASSERT_TRUE(sizeof(struct energy_mote) <= 280); }
 
 int main(void)
 {
@@ -269,6 +361,8 @@ int main(void)
     RUN_TEST(powers_of_mica2_are_the_papers);
     RUN_TEST(a_mote_that_is_off_draws_nothing);
     RUN_TEST(whatever_happens_all_adds_up);
+    RUN_TEST(wake_windows_are_listened_through);
+    RUN_TEST(a_battery_empties_between_windows_and_in_them);
     RUN_TEST(a_battery_empties_at_its_time);
     RUN_TEST(found_within_a_millisecond_when_nothing_happens);
     RUN_TEST(work_that_the_battery_does_not_reach_for_kills);
