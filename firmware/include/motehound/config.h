@@ -113,6 +113,16 @@
 #define MH_ROUTE_HOPS_MAX 4096
 #endif
 
+/* Members of a cluster, its head not counted: 20 bytes each, in what a node knows of its cluster. The rules scm* take all nodes that detect the
+ * target, as far as there is room; the others make do with 7 or 15. */
+#ifndef MH_CLUSTER_MAX
+#ifdef __AVR__
+#define MH_CLUSTER_MAX 8
+#else
+#define MH_CLUSTER_MAX 32
+#endif
+#endif
+
 /* Synchronised time: pairs of local and network time that the line goes through, 8 bytes each, one a round; and neighbours whose messages are
  * stamped, 10 bytes each. */
 #ifndef MH_CLOCK_PAIRS
@@ -168,6 +178,9 @@
 #endif
 #if MH_ROUTE_HOPS_MAX < 1 || MH_ROUTE_HOPS_MAX > 32767
 #error "MH_ROUTE_HOPS_MAX must be 1 to 32767: it travels as 16 bits with a sign"
+#endif
+#if MH_CLUSTER_MAX < 4 || MH_CLUSTER_MAX > 200
+#error "MH_CLUSTER_MAX must be 4 to 200: a position takes a few ranges, and the list is searched linearly"
 #endif
 #if MH_CLOCK_PAIRS < 2 || MH_CLOCK_PAIRS > 32 || MH_CLOCK_NEIGHBOURS < 1 || MH_CLOCK_NEIGHBOURS > 250
 #error                                                                                                                 \

@@ -1,0 +1,389 @@
+#include "motehound/election.h"
+
+void mh_election_config_default(struct mh_election_config *config, enum mh_election rule)
+{
+    const uint8_t members = rule == MH_ELECTION_SACX ? 15 : 7;
+    const struct mh_election_config nominal = {
+        .rule = rule,
+        .members = members < MH_CLUSTER_MAX ? members : MH_CLUSTER_MAX,
+        .horizon = 4,
+        .least_answers = 4,
+        .sensing_range_m = 50.0f,
+        .radio_range_m = 100.0f,
+        .interval = 2 * MH_TICKS_PER_S,
+    };
+    *config = nominal;
+}
+
+enum mh_status mh_election_check(const struct mh_election_config *config)
+{
+    const bool sound = (unsigned)config->rule < MH_ELECTIONS && config->members >= 1 &&
+                       config->members <= MH_CLUSTER_MAX && config->horizon >= 1 &&
+                       config->horizon <= MH_ELECTION_HORIZON_MAX && config->least_answers <= MH_CLUSTER_MAX + 1 &&
+                       mh_within(config->sensing_range_m, 0.1f, 1e4f) && mh_within(config->radio_range_m, 0.1f, 1e5f) &&
+                       config->interval >= 1 && config->interval <= 3600000u;
+    return sound ? MH_OK : MH_ERR_ARGUMENT;
+}
+
+static bool takes_all_that_detect(enum mh_election rule)
+{
+    return rule == MH_ELECTION_SCM || rule == MH_ELECTION_SCM_NEAR || rule == MH_ELECTION_SCM_SET;
+}
+
+static uint32_t millimetres(mh_real m) { return (uint32_t)(m * 1000.0f); }
+
+const struct mh_member *mh_cluster_find(const struct mh_cluster *cluster, mh_node_id id)
+{
+    if (cluster->head.id == id) {
+        return &cluster->head;
+    }
+    for (uint8_t i = 0; i < cluster->count; i++) {
+        if (cluster->members[i].id == id) {
+            return &cluster->members[i];
+        }
+    }
+    return NULL;
+}
+
+bool mh_election_asks(const struct mh_election_config *config, const struct mh_cluster *cluster, mh_node_id id,
+                      const struct mh_place *place, const struct mh_place *predicted)
+{
+    if (id == cluster->head.id) {
+        return true;
+    }
+    if (takes_all_that_detect(config->rule)) {
+        return mh_place_within(place, &cluster->head.place, millimetres(config->radio_range_m));
+    }
+    return mh_cluster_find(cluster, id) != NULL &&
+           (config->rule != MH_ELECTION_SACX ||
+            mh_place_within(place, predicted, millimetres(config->sensing_range_m + MH_ELECTION_MARGIN_M)));
+}
+
+/* The way of the target as all see it: relative to `origin`, in metres. */
+struct way {
+    struct mh_place origin;
+    struct mh_vec2 position, stored, step; /* step: of one interval */
+    mh_real step_length;
+    mh_real sensing_squared;
+    uint32_t sensing_mm, radio_mm;
+    uint8_t horizon;
+};
+
+static enum mh_status make_way(struct way *way, const struct mh_election_config *config,
+                               const struct mh_estimate *estimate)
+{
+    const mh_real interval_s = (mh_real)config->interval * (1.0f / (mh_real)MH_TICKS_PER_S);
+    way->origin = estimate->origin;
+    way->position = estimate->position;
+    way->stored = estimate->stored;
+    way->step.x = estimate->stored_velocity.x * interval_s;
+    way->step.y = estimate->stored_velocity.y * interval_s;
+    way->step_length = mh_sqrt(mh_squared(way->step.x) + mh_squared(way->step.y));
+    way->sensing_squared = mh_squared(config->sensing_range_m);
+    way->sensing_mm = millimetres(config->sensing_range_m);
+    way->radio_mm = millimetres(config->radio_range_m);
+    if (!mh_finite(way->position.x) || !mh_finite(way->position.y) || !mh_finite(way->stored.x) ||
+        !mh_finite(way->stored.y) || !mh_finite(way->step_length)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    way->horizon = config->horizon;
+    if (config->rule == MH_ELECTION_SACX) {
+        const mh_real diameter = 2.0f * config->sensing_range_m;
+        const bool fast = way->step_length * MH_ELECTION_HORIZON_MAX > diameter;
+        const mh_real crossing = fast ? diameter / way->step_length : (mh_real)MH_ELECTION_HORIZON_MAX;
+        const uint8_t whole = (uint8_t)crossing;
+        const uint8_t instants = (uint8_t)(whole + ((mh_real)whole < crossing ? 1 : 0));
+        way->horizon = instants < 2 ? 2 : instants;
+    }
+    return MH_OK;
+}
+
+/* `place`, as a vector from where the target is expected after `intervals`. */
+static struct mh_vec2 from_prediction(const struct way *way, mh_real intervals, const struct mh_place *place)
+{
+    struct mh_vec2 v = mh_place_relative(place, &way->origin);
+    v.x -= way->stored.x + intervals * way->step.x;
+    v.y -= way->stored.y + intervals * way->step.y;
+    return v;
+}
+
+static mh_real square_of(struct mh_vec2 v) { return mh_squared(v.x) + mh_squared(v.y); }
+
+static bool covers(const struct way *way, mh_real intervals, const struct mh_place *place)
+{
+    return square_of(from_prediction(way, intervals, place)) <= way->sensing_squared;
+}
+
+/* How good a node is: more merit, then less distance, then the lower identifier. */
+struct rank {
+    mh_real merit, distance;
+    mh_node_id id;
+};
+
+static bool better(const struct rank *a, const struct rank *b)
+{
+    if (a->merit < b->merit || a->merit > b->merit) {
+        return a->merit > b->merit;
+    }
+    if (a->distance < b->distance || a->distance > b->distance) {
+        return a->distance < b->distance;
+    }
+    return a->id < b->id;
+}
+
+/* How far the target goes inside the node's disc from P_1 on. */
+static mh_real way_inside(const struct way *way, const struct mh_place *place)
+{
+    const struct mh_vec2 d = from_prediction(way, 1.0f, place);
+    if (!(way->step_length > 0)) {
+        return mh_sqrt(way->sensing_squared) - mh_sqrt(square_of(d));
+    }
+    const mh_real ahead = (d.x * way->step.x + d.y * way->step.y) / way->step_length;
+    return ahead + mh_sqrt(mh_max(mh_squared(ahead) + way->sensing_squared - square_of(d), 0));
+}
+
+/* The candidate as a node of the cluster that the rules sac, sacx and rho form. */
+static struct mh_member rank_ahead(const struct mh_election_config *config, const struct way *way,
+                                   const struct mh_candidate *candidate, struct rank *rank)
+{
+    struct mh_member member = {candidate->id, candidate->place, 0, 0};
+    rank->id = candidate->id;
+    if (config->rule == MH_ELECTION_RHO) {
+        rank->merit = way_inside(way, &candidate->place);
+        rank->distance = 0;
+        return member;
+    }
+    for (uint8_t q = 1; q <= way->horizon; q++) {
+        if (covers(way, (mh_real)q, &candidate->place)) {
+            member.first = member.first == 0 ? q : member.first;
+            member.last = q;
+        }
+    }
+    /* a straight line cuts a disc in one piece */
+    const uint8_t instants = member.last == 0 ? 0 : (uint8_t)(member.last - member.first + 1);
+    const mh_real aim = config->rule == MH_ELECTION_SACX ? 0.5f * (mh_real)(way->horizon + 1) : (mh_real)way->horizon;
+    rank->merit = (mh_real)instants;
+    rank->distance = square_of(from_prediction(way, aim, &candidate->place));
+    return member;
+}
+
+/* The best members of a cluster, so far. */
+struct list {
+    struct mh_cluster *cluster;
+    uint8_t limit;
+    struct rank ranks[MH_CLUSTER_MAX];
+};
+
+static void add(struct list *list, const struct mh_member *member, const struct rank *rank)
+{
+    struct mh_cluster *cluster = list->cluster;
+    uint8_t i = cluster->count;
+    if (i == list->limit) {
+        if (!better(rank, &list->ranks[i - 1])) {
+            return;
+        }
+        i--;
+    } else {
+        cluster->count++;
+    }
+    for (; i > 0 && better(rank, &list->ranks[i - 1]); i--) {
+        list->ranks[i] = list->ranks[i - 1];
+        cluster->members[i] = cluster->members[i - 1];
+    }
+    list->ranks[i] = *rank;
+    cluster->members[i] = *member;
+}
+
+static void choose_ahead(const struct mh_election_config *config, const struct way *way,
+                         const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+{
+    struct list list;
+    list.cluster = cluster;
+    list.limit = config->members;
+    cluster->count = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct mh_candidate *candidate = &candidates[i];
+        const bool near = config->rule == MH_ELECTION_SACX
+                              ? mh_place_within(&candidate->place, &cluster->head.place, way->radio_mm)
+                              : covers(way, 1.0f, &candidate->place);
+        if (candidate->id == cluster->head.id || !near) {
+            continue;
+        }
+        struct rank rank;
+        const struct mh_member member = rank_ahead(config, way, candidate, &rank);
+        if (config->rule == MH_ELECTION_RHO || member.last != 0) {
+            add(&list, &member, &rank);
+        }
+    }
+}
+
+/* The nodes that detect, those nearest to `about` first. */
+static void choose_detecting(const struct mh_candidate *candidates, size_t count, uint8_t limit,
+                             const struct mh_place *about, struct mh_cluster *cluster)
+{
+    struct list list;
+    list.cluster = cluster;
+    list.limit = limit;
+    cluster->count = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (candidates[i].detects && candidates[i].id != cluster->head.id) {
+            const struct mh_vec2 d = mh_place_relative(&candidates[i].place, about);
+            const struct rank rank = {0, square_of(d), candidates[i].id};
+            const struct mh_member member = {candidates[i].id, candidates[i].place, 0, 0};
+            add(&list, &member, &rank);
+        }
+    }
+}
+
+/* Of those that detect, the one nearest to `about`; NULL if there is none. */
+static const struct mh_candidate *nearest_detecting(const struct mh_candidate *candidates, size_t count,
+                                                    const struct mh_place *about)
+{
+    const struct mh_candidate *nearest = NULL;
+    struct rank best = {0, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        const struct rank rank = {0, square_of(mh_place_relative(&candidates[i].place, about)), candidates[i].id};
+        if (candidates[i].detects && (nearest == NULL || better(&rank, &best))) {
+            nearest = &candidates[i];
+            best = rank;
+        }
+    }
+    return nearest;
+}
+
+enum mh_status mh_elect_first(const struct mh_election_config *config, const struct mh_place *about,
+                              const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+{
+    const struct mh_candidate *head = nearest_detecting(candidates, count, about);
+    if (head == NULL) {
+        return MH_NONE;
+    }
+    const struct mh_member member = {head->id, head->place, 0, 0};
+    cluster->head = member;
+    choose_detecting(candidates, count, takes_all_that_detect(config->rule) ? MH_CLUSTER_MAX : config->members,
+                     &head->place, cluster);
+    return MH_OK;
+}
+
+static bool due_by_detection(enum mh_election rule, const struct mh_candidate *candidates, size_t count,
+                             const struct mh_candidate *nearest, const struct mh_cluster *cluster)
+{
+    if (rule == MH_ELECTION_SCM_NEAR) {
+        return nearest->id != cluster->head.id;
+    }
+    bool head_detects = false;
+    uint8_t known = 0; /* nodes of the cluster that detect */
+    for (size_t i = 0; i < count; i++) {
+        if (candidates[i].detects) {
+            if (mh_cluster_find(cluster, candidates[i].id) == NULL) {
+                return true;
+            }
+            known++;
+            head_detects = head_detects || candidates[i].id == cluster->head.id;
+        }
+    }
+    return !head_detects || (rule == MH_ELECTION_SCM_SET && known < cluster->count + 1);
+}
+
+static enum mh_status elect_by_detection(const struct mh_election_config *config, const struct way *way,
+                                         const struct mh_candidate *candidates, size_t count,
+                                         struct mh_cluster *cluster)
+{
+    const struct mh_place about = mh_place_from_offset(&way->origin, way->position);
+    const struct mh_candidate *nearest = nearest_detecting(candidates, count, &about);
+    if (nearest == NULL || !due_by_detection(config->rule, candidates, count, nearest, cluster)) {
+        return MH_NONE;
+    }
+    const struct mh_member head = {nearest->id, nearest->place, 0, 0};
+    cluster->head = head;
+    choose_detecting(candidates, count, MH_CLUSTER_MAX, &about, cluster);
+    return MH_OK;
+}
+
+/* A new cluster is due by the rules sac, sacx and rho. */
+static bool due_ahead(const struct mh_election_config *config, const struct way *way,
+                      const struct mh_candidate *candidates, size_t count, const struct mh_cluster *cluster)
+{
+    size_t answers = 0, replacements = 0;
+    for (size_t i = 0; i < count; i++) {
+        answers += candidates[i].detects;
+        replacements += covers(way, 1.0f, &candidates[i].place);
+    }
+    if (replacements == 0) {
+        return false;
+    }
+    if (!covers(way, 1.0f, &cluster->head.place)) {
+        return true;
+    }
+    size_t covering = 1;
+    for (uint8_t i = 0; i < cluster->count; i++) {
+        covering += covers(way, 1.0f, &cluster->members[i].place);
+    }
+    const size_t effective = answers < covering ? answers : covering;
+    return effective < config->least_answers && replacements > effective;
+}
+
+/* rho: how well the candidate's place suits a head: 2, in the sector ahead and near the present head; 1, in the sector; 0. */
+static uint8_t suits(const struct way *way, const struct mh_candidate *candidate, const struct mh_place *head)
+{
+    const struct mh_vec2 d = from_prediction(way, 0.0f, &candidate->place);
+    const mh_real ahead = d.x * way->step.x + d.y * way->step.y;
+    const bool in_sector = !(way->step_length > 0) || (ahead >= 0 && 2.0f * mh_squared(ahead / way->step_length) >=
+                                                                         square_of(d)); /* cos2 of 45 degrees is 1/2 */
+    if (!in_sector) {
+        return 0;
+    }
+    return mh_place_within(&candidate->place, head, way->sensing_mm) ? 2 : 1;
+}
+
+static enum mh_status elect_ahead(const struct mh_election_config *config, const struct way *way,
+                                  const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+{
+    if (!due_ahead(config, way, candidates, count, cluster)) {
+        return MH_NONE;
+    }
+    struct mh_member head = cluster->head;
+    struct rank best = {0, 0, 0};
+    uint8_t best_suits = 0;
+    bool found = false;
+    for (size_t i = 0; i < count; i++) {
+        if (!covers(way, 1.0f, &candidates[i].place)) {
+            continue;
+        }
+        struct rank rank;
+        const struct mh_member member = rank_ahead(config, way, &candidates[i], &rank);
+        const uint8_t how = config->rule == MH_ELECTION_RHO ? suits(way, &candidates[i], &cluster->head.place) : 0;
+        if (!found || how > best_suits || (how == best_suits && better(&rank, &best))) {
+            found = true;
+            head = member;
+            best = rank;
+            best_suits = how;
+        }
+    }
+    cluster->head = head;
+    choose_ahead(config, way, candidates, count, cluster);
+    return MH_OK;
+}
+
+enum mh_status mh_elect(const struct mh_election_config *config, const struct mh_estimate *estimate,
+                        const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+{
+    struct way way;
+    const enum mh_status status = make_way(&way, config, estimate);
+    if (status != MH_OK) {
+        return status;
+    }
+    return takes_all_that_detect(config->rule) ? elect_by_detection(config, &way, candidates, count, cluster)
+                                               : elect_ahead(config, &way, candidates, count, cluster);
+}
+
+enum mh_status mh_elect_members(const struct mh_election_config *config, const struct mh_estimate *estimate,
+                                const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+{
+    struct way way;
+    const enum mh_status status = make_way(&way, config, estimate);
+    if (status == MH_OK && config->rule == MH_ELECTION_SACX) {
+        choose_ahead(config, &way, candidates, count, cluster);
+    }
+    return status;
+}
