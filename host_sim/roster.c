@@ -89,15 +89,15 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
     return 0;
 }
 
-struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_head)
+struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_sink)
 {
     return (struct host_mote){.id = id,
                               .place = place,
-                              .sensor = is_head ? NULL : &kit->sensor,
-                              .head = is_head ? &kit->head : NULL,
+                              .sensor = is_sink ? NULL : &kit->sensor,
+                              .head = is_sink != kit->protocol.in_turns ? &kit->head : NULL,
                               .protocol = kit->protocol.protocol,
                               .protocol_config = &kit->protocol.config,
-                              .sync = kit->synchronised ? is_head ? &kit->root : &kit->other : NULL};
+                              .sync = kit->synchronised ? is_sink ? &kit->root : &kit->other : NULL};
 }
 
 int roster_complete(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size)

@@ -1,5 +1,5 @@
 /* Who is in the network: what each mote of a run is. The nodes with sensors are motes 0, 1, 2 ... in the order of their identifiers; one
- * more, the sink, has no sensor but the head, and the largest node's identifier plus one.
+ * more, the sink, has no sensor, and the largest node's identifier plus one. It is the head, unless the protocol lets the nodes take turns.
  *
  * It follows from the scenario and the seed alone, so every process that hosts motes of a run can make it for itself. */
 #ifndef MOTEHOUND_SIM_ROSTER_H
@@ -36,8 +36,8 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
 /* Complete the kit where the caller has filled in sensor, tracker and protocol; `epoch` is a sampling instant. */
 void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh_tick epoch);
 
-/* Mote `id` at `place`: the head, or a node with a sensor; its clock is ideal. It points into the kit. */
-struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_head);
+/* Mote `id` at `place`: the sink, or a node with a sensor; its clock is ideal. It points into the kit. */
+struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_sink);
 
 /* The motes of `scenario` run with `seed`. Returns 0, or -1 with one line in `error`; roster_free it in any case. */
 int roster_make(struct roster *roster, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size);

@@ -23,6 +23,7 @@ struct tracker_choice {
 
 struct protocol_choice {
     const struct mh_protocol *protocol;
+    bool in_turns; /* each node with a sensor can be head, and the sink is none; else it is the only one */
     union {
         struct mh_collection_config collection;
         struct mh_geographic_collection_config geographic;

@@ -26,3 +26,22 @@ void *memory_array(size_t count, size_t size)
 #endif
     return memset(array, 0, bytes);
 }
+
+void *memory_reserve(size_t size)
+{
+    void *memory = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) {
+        return NULL;
+    }
+#ifdef MADV_NOHUGEPAGE
+    (void)madvise(memory, size, MADV_NOHUGEPAGE); /* a wish */
+#endif
+    return memory;
+}
+
+void memory_release(void *memory, size_t size)
+{
+    if (memory) {
+        (void)munmap(memory, size);
+    }
+}

@@ -16,11 +16,13 @@ union any {
     void *pointer;
 };
 
-/* What a mote that computes needs besides; only few do. */
+/* What a mote that computes needs besides: one of them, or in a network that takes turns nearly all. It is large and reserved, so that a mote that
+ * never leads costs the beginning of it and the end. */
 struct head_memory {
     struct mh_head_config config;
     struct mh_head head;
     struct head_memory *next;
+    size_t size;
     union any tracker_state[];
 };
 
@@ -144,12 +146,12 @@ static void start(struct slot *slot)
 {
     struct in_process *host = slot->host;
     count_mote(slot, &host->past);
-    memset(&slot->mote, 0, sizeof slot->mote);
     memset(slot->protocol_state, 0, host->protocol_size);
-    if (slot->head) {
+    if (slot->head && slot->mote.config) { /* anew */
         memset(&slot->head->head, 0, sizeof slot->head->head);
         memset(slot->head->tracker_state, 0, slot->head->config.tracker->state_size);
     }
+    memset(&slot->mote, 0, sizeof slot->mote);
     if (host->now > 0) {
         local_clock_restart(&slot->clock, host->now);
     }
@@ -303,10 +305,12 @@ static int add(void *state, uint32_t mote, const struct host_mote *what)
         slot->config.clock_state = slot->network_clock;
     }
     if (what->head) {
-        struct head_memory *memory = calloc(1, sizeof *memory + what->head->tracker->state_size);
+        const size_t size = sizeof(struct head_memory) + what->head->tracker->state_size;
+        struct head_memory *memory = memory_reserve(size);
         if (!memory) {
             return -1;
         }
+        memory->size = size;
         memory->config = *what->head;
         memory->config.tracker_state = memory->tracker_state;
         memory->next = host->heads;
@@ -378,7 +382,7 @@ static void destroy(void *state)
     struct in_process *host = state;
     while (host->heads) {
         struct head_memory *following = host->heads->next;
-        free(host->heads);
+        memory_release(host->heads, host->heads->size);
         host->heads = following;
     }
     for (uint32_t i = 0; i < host->count; i++) {

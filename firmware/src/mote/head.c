@@ -56,8 +56,10 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
     if (status != MH_OK) {
         return status;
     }
-    memset(head, 0, sizeof *head);
     head->config = config;
+    head->count = 0; /* the table stays as it is: it is large, and where heads take turns most motes never need it */
+    head->tracking = false;
+    head->counters = (struct mh_head_counters){0};
     const uint32_t since = now - config->epoch, until = config->epoch - now;
     head->instant = mh_tick_before(config->epoch, now)
                         ? config->epoch + (since + config->interval - 1) / config->interval * config->interval
