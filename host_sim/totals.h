@@ -16,6 +16,13 @@
     X(FRAMES_SENT_HELLOS, "frames_sent_hellos", c->frames_sent[MH_MESSAGE_HELLO], "of these hellos to the neighbours")                             \
     X(FRAMES_SENT_LANDMARKS, "frames_sent_landmarks", c->frames_sent[MH_MESSAGE_LANDMARK], "of these landmarks, which say where the head is")      \
     X(FRAMES_SENT_SYNCS, "frames_sent_syncs", c->frames_sent[MH_MESSAGE_SYNC], "of these synchronisations of the clocks")                          \
+    X(FRAMES_SENT_ASKS, "frames_sent_asks", c->frames_sent[MH_MESSAGE_ASK], "of these requests of a head for samples of its cluster")              \
+    X(FRAMES_SENT_ANSWERS, "frames_sent_answers", c->frames_sent[MH_MESSAGE_ANSWER], "of these answers to them")                                   \
+    X(FRAMES_SENT_FORMS, "frames_sent_forms", c->frames_sent[MH_MESSAGE_FORM], "of these announcements of a cluster")                              \
+    X(FRAMES_SENT_JOINS, "frames_sent_joins", c->frames_sent[MH_MESSAGE_JOIN], "of these answers to them")                                         \
+    X(FRAMES_SENT_HAND_OVERS, "frames_sent_hand_overs", c->frames_sent[MH_MESSAGE_HAND_OVER], "of these parts of tracks on their way to the next head")\
+    X(FRAMES_SENT_ALERTS, "frames_sent_alerts", c->frames_sent[MH_MESSAGE_ALERT], "of these alerts that the target was found or lost")             \
+    X(FRAMES_SENT_POSITIONS, "frames_sent_positions", c->frames_sent[MH_MESSAGE_POSITION], "of these positions on their way to the sink")          \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
     X(FRAMES_DUPLICATE, "frames_duplicate", c->frames_duplicate, "receptions of a frame that the mote had before; its radio keeps them to itself")  \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \

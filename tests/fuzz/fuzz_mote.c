@@ -100,7 +100,9 @@ static void sound_frame(struct world *world, struct input *input)
     size_t length, bare;
     mh_wire_encode(mh_wire_all, &message, frame, &bare);
     message.envelope = (enum mh_envelope_kind)(choice / MH_MESSAGE_KINDS % MH_ENVELOPE_KINDS);
-    mh_wire_encode(mh_wire_all, &message, frame, &length);
+    if (mh_wire_encode(mh_wire_all, &message, frame, &length) != MH_OK) {
+        return; /* too long for the envelope */
+    }
     if (length > bare) {
         bytes(input, frame + 8, length - bare - 8);
     }

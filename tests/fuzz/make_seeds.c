@@ -99,6 +99,38 @@ int main(int argc, char **argv)
                                      .as.hello = {.sender = 8, .x_mm = 7000, .y_mm = -3000, .sequence = 5}};
     const struct mh_message landmark = {.kind = MH_MESSAGE_LANDMARK,
                                         .as.landmark = {.beacon = beacon.as.beacon, .x_mm = 40000, .y_mm = 40000}};
+    const struct mh_message ask = {.kind = MH_MESSAGE_ASK,
+                                   .as.ask = {.sender = 3,
+                                              .track = 2,
+                                              .generation = 4,
+                                              .time_ms = 14000,
+                                              .x_mm = 5000,
+                                              .y_mm = 6000,
+                                              .vx_mmps = 4470,
+                                              .vy_mmps = -100}};
+    const struct mh_message answer = {
+        .kind = MH_MESSAGE_ANSWER,
+        .as.answer = {.sender = 5, .time_ms = 14000, .x_mm = 7000, .y_mm = 8000, .value_q20 = 20 << 20, .flags = 2}};
+    struct mh_message form = {.kind = MH_MESSAGE_FORM,
+                              .as.form = {.sender = 3, .track = 2, .generation = 5, .time_ms = 16000, .count = 2}};
+    for (int i = 0; i < MH_FORM_MEMBERS; i++) {
+        form.as.form.members[i] = i < 2 ? 7 + i : -1; /* the mote of fuzz_mote.c first */
+    }
+    const struct mh_message join = {.kind = MH_MESSAGE_JOIN, .as.join = {.sender = 8, .track = 2, .generation = 5}};
+    struct mh_message part = {
+        .kind = MH_MESSAGE_HAND_OVER,
+        .as.hand_over = {.track = 2, .generation = 6, .time_ms = 14000, .parts = 1, .length = 20, .data = {1, 2, 3}}};
+    part.envelope = MH_ENVELOPE_ROUTE;
+    part.header.route = (mh_route_t){.sender = 3, .origin = 3, .destination = 7, .sequence = 9};
+    const struct mh_message alert = {
+        .kind = MH_MESSAGE_ALERT,
+        .as.alert = {.sender = 8, .track = 8, .generation = 1, .time_ms = 14000, .value_q20 = 3 << 20}};
+    struct mh_message position = {
+        .kind = MH_MESSAGE_POSITION,
+        .as.position = {
+            .origin = 3, .track = 2, .generation = 4, .time_ms = 14000, .x_mm = 5000, .y_mm = 6000, .vx_mmps = 4470}};
+    position.envelope = MH_ENVELOPE_ROUTE;
+    position.header.route = (mh_route_t){.sender = 3, .origin = 3, .destination = 1, .x_mm = 40000, .sequence = 10};
     struct mh_message route = report;
     route.envelope = MH_ENVELOPE_ROUTE;
     route.header.route = (mh_route_t){
@@ -111,7 +143,10 @@ int main(int argc, char **argv)
     int failed = save_frame(wire, "beacon", &beacon) || save_frame(wire, "report", &report) ||
                  save_frame(wire, "request", &request) || save_frame(wire, "hello", &hello) ||
                  save_frame(wire, "landmark", &landmark) || save_frame(wire, "route", &route) ||
-                 save_frame(wire, "face", &face) || save_frame(wire, "sync", &sync);
+                 save_frame(wire, "face", &face) || save_frame(wire, "sync", &sync) || save_frame(wire, "ask", &ask) ||
+                 save_frame(wire, "answer", &answer) || save_frame(wire, "form", &form) ||
+                 save_frame(wire, "join", &join) || save_frame(wire, "hand_over", &part) ||
+                 save_frame(wire, "alert", &alert) || save_frame(wire, "position", &position);
     for (uint8_t choice = 0; choice < 64; choice++) {
         char name[20];
         snprintf(name, sizeof name, "track%u", choice);

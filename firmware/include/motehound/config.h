@@ -90,7 +90,7 @@
 #endif
 #endif
 
-/* Messages that wait at a node to be sent to a neighbour, some 100 bytes each, and messages it remembers having taken, so that it takes
+/* Messages that wait at a node to be sent to a neighbour, some 140 bytes each, and messages it remembers having taken, so that it takes
  * none twice, 16 bytes each. */
 #ifndef MH_LINK_QUEUE_MAX
 #ifdef __AVR__

@@ -10,10 +10,17 @@
 #include "motehound/measurement.h"
 #include "motehound/status.h"
 
+#include "mh_alert_t.h"
+#include "mh_answer_t.h"
+#include "mh_ask_t.h"
 #include "mh_beacon_t.h"
 #include "mh_face_t.h"
+#include "mh_form_t.h"
+#include "mh_hand_over_t.h"
 #include "mh_hello_t.h"
+#include "mh_join_t.h"
 #include "mh_landmark_t.h"
+#include "mh_position_t.h"
 #include "mh_report_t.h"
 #include "mh_request_t.h"
 #include "mh_sync_t.h"
@@ -23,6 +30,9 @@
 
 #define MH_BROADCAST ((mh_node_id)0xFFFFFFFFu)
 
+#define MH_FORM_MEMBERS 16    /* that a form_t names */
+#define MH_HAND_OVER_BYTES 64 /* of a track in a hand_over_t */
+
 enum mh_message_kind {
     MH_MESSAGE_BEACON,
     MH_MESSAGE_REPORT,
@@ -30,6 +40,13 @@ enum mh_message_kind {
     MH_MESSAGE_HELLO,
     MH_MESSAGE_LANDMARK,
     MH_MESSAGE_SYNC,
+    MH_MESSAGE_ASK,
+    MH_MESSAGE_ANSWER,
+    MH_MESSAGE_FORM,
+    MH_MESSAGE_JOIN,
+    MH_MESSAGE_HAND_OVER,
+    MH_MESSAGE_ALERT,
+    MH_MESSAGE_POSITION,
     MH_MESSAGE_KINDS
 };
 
@@ -44,6 +61,13 @@ struct mh_message {
         mh_hello_t hello;
         mh_landmark_t landmark;
         mh_sync_t sync;
+        mh_ask_t ask;
+        mh_answer_t answer;
+        mh_form_t form;
+        mh_join_t join;
+        mh_hand_over_t hand_over;
+        mh_alert_t alert;
+        mh_position_t position;
     } as;
     enum mh_envelope_kind envelope;
     mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */
@@ -58,12 +82,13 @@ struct mh_wire_type {
     int (*encode)(const struct mh_message *message, uint8_t *bytes, int room);
     /* bytes[0 .. length) -> message. Returns how many bytes it took; negative if they are too few or a field is one that no sender
      * writes: MH_BROADCAST as sender, more than MH_HOPS_MAX hops (MH_ROUTE_HOPS_MAX in an envelope), a place outside
-     * +- 1e9 mm, a negative radius. */
+     * +- 1e9 mm, a speed along an axis outside +- 1e9 mm/s, a negative radius, a number of things that do not fit or are not there. */
     int (*decode)(struct mh_message *message, const uint8_t *bytes, int length);
 };
 
 extern const struct mh_wire_type mh_wire_beacon, mh_wire_report, mh_wire_request, mh_wire_hello, mh_wire_landmark,
-    mh_wire_sync, mh_wire_route, mh_wire_face;
+    mh_wire_sync, mh_wire_ask, mh_wire_answer, mh_wire_form, mh_wire_join, mh_wire_hand_over, mh_wire_alert,
+    mh_wire_position, mh_wire_route, mh_wire_face;
 
 /* What somebody speaks: types in any order, then NULL. */
 typedef const struct mh_wire_type *const mh_wire_types;
@@ -71,8 +96,8 @@ typedef const struct mh_wire_type *const mh_wire_types;
 /* Every type there is: for who looks on. */
 extern mh_wire_types mh_wire_all[];
 
-/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes. Errors: MH_ERR_ARGUMENT (the kind or the envelope is not
- * among `types`). */
+/* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes, which are written whatever is returned. Errors: MH_ERR_ARGUMENT
+ * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t and hand_over_t do not go in a face_t). */
 enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *message, uint8_t *frame, size_t *length);
 
 /* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields
@@ -85,5 +110,9 @@ uint16_t mh_wire_fcs(const uint8_t *bytes, size_t length);
 /* A measurement as the report that its node puts on the air (hops 0), and back. */
 void mh_report_from_measurement(const struct mh_measurement *measurement, mh_report_t *report);
 void mh_report_to_measurement(const mh_report_t *report, struct mh_measurement *measurement);
+
+/* The same as an answer. */
+void mh_answer_from_measurement(const struct mh_measurement *measurement, mh_answer_t *answer);
+void mh_answer_to_measurement(const mh_answer_t *answer, struct mh_measurement *measurement);
 
 #endif

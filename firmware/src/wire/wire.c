@@ -46,11 +46,13 @@ static const struct mh_wire_type *find_fingerprint(mh_wire_types *types, const u
     return *types;
 }
 
+/* Returns the end; negative if there is no room. */
 static int put(const struct mh_wire_type *type, const struct mh_message *message, uint8_t *frame, int begin)
 {
+    const int after = begin + FINGERPRINT_BYTES;
     put_fingerprint(frame + begin, type->fingerprint(NULL));
-    begin += FINGERPRINT_BYTES;
-    return begin + type->encode(message, frame + begin, MH_FRAME_MAX - FCS_BYTES - begin);
+    const int taken = type->encode(message, frame + after, MH_FRAME_MAX - FCS_BYTES - after);
+    return taken < 0 ? taken : after + taken;
 }
 
 enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *message, uint8_t *frame, size_t *length)
@@ -66,6 +68,9 @@ enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *mes
     }
     const int begin = envelope ? put(envelope, message, frame, 0) : 0;
     const int end = put(body, message, frame, begin);
+    if (end < 0) {
+        return MH_ERR_CAPACITY;
+    }
     const uint16_t fcs = mh_wire_fcs(frame, (size_t)end);
     frame[end] = (uint8_t)(fcs & 0xFFu);
     frame[end + 1] = (uint8_t)(fcs >> 8);
@@ -143,6 +148,32 @@ void mh_report_to_measurement(const mh_report_t *report, struct mh_measurement *
         .increment = report->increment_q20,
         .flags = report->flags,
         .target = report->target,
+    };
+    *measurement = unpacked;
+}
+
+void mh_answer_from_measurement(const struct mh_measurement *measurement, mh_answer_t *answer)
+{
+    const mh_answer_t packed = {
+        .sender = (int32_t)measurement->node,
+        .time_ms = (int32_t)measurement->time,
+        .x_mm = measurement->place.x_mm,
+        .y_mm = measurement->place.y_mm,
+        .z_mm = measurement->place.z_mm,
+        .value_q20 = measurement->value,
+        .flags = measurement->flags,
+    };
+    *answer = packed;
+}
+
+void mh_answer_to_measurement(const mh_answer_t *answer, struct mh_measurement *measurement)
+{
+    const struct mh_measurement unpacked = {
+        .node = (mh_node_id)answer->sender,
+        .place = {answer->x_mm, answer->y_mm, answer->z_mm},
+        .time = (mh_tick)answer->time_ms,
+        .value = answer->value_q20,
+        .flags = answer->flags & MH_MEASUREMENT_ASKED, /* an answer bears no increment */
     };
     *measurement = unpacked;
 }

@@ -32,6 +32,49 @@ static bool landmark_sound(const mh_landmark_t *landmark)
 
 static bool sync_sound(const mh_sync_t *sync) { return sync->sender != -1 && sync->root != -1 && sync->stamped <= 1; }
 
+static bool ask_sound(const mh_ask_t *ask)
+{
+    return ask->sender != -1 && ask->track != -1 && ask->everyone <= 1 && valid(ask->x_mm, ask->y_mm) &&
+           valid(ask->vx_mmps, ask->vy_mmps);
+}
+
+static bool answer_sound(const mh_answer_t *answer)
+{
+    return answer->sender != -1 && valid(answer->x_mm, answer->y_mm) && mh_coordinate_valid(answer->z_mm);
+}
+
+static bool form_sound(const mh_form_t *form)
+{
+    bool sound = form->sender != -1 && form->track != -1 && form->count <= MH_FORM_MEMBERS;
+    for (uint8_t i = 0; sound && i < MH_FORM_MEMBERS; i++) {
+        sound = (form->members[i] == -1) == (i >= form->count);
+    }
+    return sound;
+}
+
+static bool join_sound(const mh_join_t *join) { return join->sender != -1 && join->track != -1; }
+
+static bool hand_over_sound(const mh_hand_over_t *part)
+{
+    bool sound = part->track != -1 && part->part < part->parts && part->length <= MH_HAND_OVER_BYTES;
+    for (uint8_t i = part->length; sound && i < MH_HAND_OVER_BYTES; i++) {
+        sound = part->data[i] == 0;
+    }
+    return sound;
+}
+
+static bool alert_sound(const mh_alert_t *alert)
+{
+    return alert->sender != -1 && alert->track != -1 && alert->lost <= 1 && alert->hops <= MH_HOPS_MAX &&
+           valid(alert->x_mm, alert->y_mm);
+}
+
+static bool position_sound(const mh_position_t *position)
+{
+    return position->origin != -1 && position->track != -1 && valid(position->x_mm, position->y_mm) &&
+           valid(position->vx_mmps, position->vy_mmps);
+}
+
 static bool route_sound(const mh_route_t *route)
 {
     return route->sender != -1 && route->origin != -1 && route->hops >= 0 && route->hops <= MH_ROUTE_HOPS_MAX &&
@@ -63,9 +106,17 @@ TYPE(request, MH_MESSAGE_REQUEST, MH_ENVELOPE_NONE, as.request);
 TYPE(hello, MH_MESSAGE_HELLO, MH_ENVELOPE_NONE, as.hello);
 TYPE(landmark, MH_MESSAGE_LANDMARK, MH_ENVELOPE_NONE, as.landmark);
 TYPE(sync, MH_MESSAGE_SYNC, MH_ENVELOPE_NONE, as.sync);
+TYPE(ask, MH_MESSAGE_ASK, MH_ENVELOPE_NONE, as.ask);
+TYPE(answer, MH_MESSAGE_ANSWER, MH_ENVELOPE_NONE, as.answer);
+TYPE(form, MH_MESSAGE_FORM, MH_ENVELOPE_NONE, as.form);
+TYPE(join, MH_MESSAGE_JOIN, MH_ENVELOPE_NONE, as.join);
+TYPE(hand_over, MH_MESSAGE_HAND_OVER, MH_ENVELOPE_NONE, as.hand_over);
+TYPE(alert, MH_MESSAGE_ALERT, MH_ENVELOPE_NONE, as.alert);
+TYPE(position, MH_MESSAGE_POSITION, MH_ENVELOPE_NONE, as.position);
 TYPE(route, MH_MESSAGE_KINDS, MH_ENVELOPE_ROUTE, header.route);
 TYPE(face, MH_MESSAGE_KINDS, MH_ENVELOPE_FACE, header);
 
-mh_wire_types mh_wire_all[] = {&mh_wire_beacon, &mh_wire_report,   &mh_wire_request,
-                               &mh_wire_hello,  &mh_wire_landmark, &mh_wire_sync,
-                               &mh_wire_route,  &mh_wire_face,     NULL};
+mh_wire_types mh_wire_all[] = {&mh_wire_beacon,   &mh_wire_report, &mh_wire_request,   &mh_wire_hello,
+                               &mh_wire_landmark, &mh_wire_sync,   &mh_wire_ask,       &mh_wire_answer,
+                               &mh_wire_form,     &mh_wire_join,   &mh_wire_hand_over, &mh_wire_alert,
+                               &mh_wire_position, &mh_wire_route,  &mh_wire_face,      NULL};

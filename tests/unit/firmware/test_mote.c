@@ -148,6 +148,14 @@ static void come_up_as_head(mh_tick now)
     come_up(now);
 }
 
+/* What was heard or sent last; one place for both spares the small boards' stack. */
+static struct mh_message *said(enum mh_message_kind kind)
+{
+    memset(&port_saw.message, 0, sizeof port_saw.message);
+    port_saw.message.kind = kind;
+    return &port_saw.message;
+}
+
 static void receive(mh_tick now, const struct mh_message *message)
 {
     uint8_t frame[MH_FRAME_MAX];
@@ -158,17 +166,20 @@ static void receive(mh_tick now, const struct mh_message *message)
 
 static void receive_beacon(mh_tick now, bool tracking)
 {
-    const struct mh_message message = {.kind = MH_MESSAGE_BEACON,
-                                       .as.beacon = {.sender = HEAD, .sink = HEAD, .round = 1, .tracking = tracking}};
-    receive(now, &message);
+    struct mh_message *message = said(MH_MESSAGE_BEACON);
+    message->as.beacon.sender = message->as.beacon.sink = HEAD;
+    message->as.beacon.round = 1;
+    message->as.beacon.tracking = tracking;
+    receive(now, message);
 }
 
 static void receive_request(mh_tick now, mh_tick time, int32_t radius_mm)
 {
-    const struct mh_message message = {
-        .kind = MH_MESSAGE_REQUEST,
-        .as.request = {.sender = HEAD, .origin = HEAD, .time_ms = (int32_t)time, .radius_mm = radius_mm}};
-    receive(now, &message);
+    struct mh_message *message = said(MH_MESSAGE_REQUEST);
+    message->as.request.sender = message->as.request.origin = HEAD;
+    message->as.request.time_ms = (int32_t)time;
+    message->as.request.radius_mm = radius_mm;
+    receive(now, message);
 }
 
 static void read(mh_tick time, int32_t counts, enum mh_status expected)
@@ -244,15 +255,14 @@ static void bad_configurations_are_refused(void)
 /* The root's sync message `number`, heard at `now`: its last one ended at `network`. */
 static void receive_sync(mh_tick now, uint8_t number, mh_tick network)
 {
-    const struct mh_message message = {.kind = MH_MESSAGE_SYNC,
-                                       .as.sync = {.sender = HEAD,
-                                                   .root = HEAD,
-                                                   .time_ms = (int32_t)network,
-                                                   .fraction = 128,
-                                                   .stamped = number > 1,
-                                                   .number = number,
-                                                   .round = number}};
-    receive(now, &message);
+    struct mh_message *message = said(MH_MESSAGE_SYNC);
+    message->as.sync.sender = message->as.sync.root = HEAD;
+    message->as.sync.time_ms = (int32_t)network;
+    message->as.sync.fraction = 128;
+    message->as.sync.stamped = number > 1;
+    message->as.sync.number = number;
+    message->as.sync.round = number;
+    receive(now, message);
 }
 
 static struct mh_clock clock;

@@ -46,6 +46,74 @@ static struct mh_message example(enum mh_message_kind kind)
         message.as.landmark = landmark;
         break;
     }
+    case MH_MESSAGE_ASK: {
+        const mh_ask_t ask = {.sender = 1,
+                              .track = 2,
+                              .generation = -3,
+                              .time_ms = INT32_MIN,
+                              .x_mm = 1000000000,
+                              .y_mm = -1000000000,
+                              .vx_mmps = -4470,
+                              .vy_mmps = 5,
+                              .everyone = 1};
+        message.as.ask = ask;
+        break;
+    }
+    case MH_MESSAGE_ANSWER: {
+        const mh_answer_t answer = {
+            .sender = 1, .time_ms = -2, .x_mm = 3, .y_mm = -4, .z_mm = 5, .value_q20 = INT32_MIN, .flags = 2};
+        message.as.answer = answer;
+        break;
+    }
+    case MH_MESSAGE_FORM: {
+        mh_form_t form = {.sender = 1, .track = 2, .generation = 3, .time_ms = 4, .count = 2};
+        for (uint8_t i = 0; i < MH_FORM_MEMBERS; i++) {
+            form.members[i] = i < form.count ? 10 + i : -1;
+        }
+        message.as.form = form;
+        break;
+    }
+    case MH_MESSAGE_JOIN: {
+        const mh_join_t join = {.sender = 1, .track = 2, .generation = 3};
+        message.as.join = join;
+        break;
+    }
+    case MH_MESSAGE_HAND_OVER: {
+        const mh_hand_over_t part = {.track = 1,
+                                     .generation = 2,
+                                     .time_ms = 3,
+                                     .part = 1,
+                                     .parts = 2,
+                                     .length = MH_HAND_OVER_BYTES,
+                                     .data = {[0] = 4, [MH_HAND_OVER_BYTES - 1] = 255}};
+        message.as.hand_over = part;
+        break;
+    }
+    case MH_MESSAGE_ALERT: {
+        const mh_alert_t alert = {.sender = 1,
+                                  .track = 2,
+                                  .generation = 3,
+                                  .time_ms = 4,
+                                  .x_mm = 5,
+                                  .y_mm = -6,
+                                  .value_q20 = -7,
+                                  .lost = 1,
+                                  .hops = MH_HOPS_MAX};
+        message.as.alert = alert;
+        break;
+    }
+    case MH_MESSAGE_POSITION: {
+        const mh_position_t position = {.origin = 1,
+                                        .track = 2,
+                                        .generation = 3,
+                                        .time_ms = 4,
+                                        .x_mm = 5,
+                                        .y_mm = -6,
+                                        .vx_mmps = 1000000000,
+                                        .vy_mmps = -8};
+        message.as.position = position;
+        break;
+    }
     default: {
         const mh_request_t request = {.sender = 1,
                                       .origin = 2,
@@ -82,6 +150,12 @@ static struct mh_message enveloped(enum mh_message_kind kind, enum mh_envelope_k
     message.envelope = envelope;
     message.header = header;
     return message;
+}
+
+/* A form_t or a hand_over_t and a face_t are longer than a frame together. */
+static bool fits(int kind, int envelope)
+{
+    return envelope != MH_ENVELOPE_FACE || (kind != MH_MESSAGE_FORM && kind != MH_MESSAGE_HAND_OVER);
 }
 
 static void encode(const struct mh_message *message)
@@ -178,6 +252,12 @@ static void an_envelope_travels_before_every_kind(void)
         TEST_ASSERT_EQUAL(kind, decoded.kind);
         TEST_ASSERT_EQUAL(MH_ENVELOPE_ROUTE, decoded.envelope);
         TEST_ASSERT_EQUAL_MEMORY(&route.header.route, &decoded.header.route, sizeof route.header.route);
+        if (!fits(kind, MH_ENVELOPE_FACE)) {
+            length = 99;
+            TEST_ASSERT_EQUAL(MH_ERR_CAPACITY, mh_wire_encode(mh_wire_all, &face, frame, &length));
+            TEST_ASSERT_EQUAL(99, length);
+            continue;
+        }
         encode(&face);
         TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
         TEST_ASSERT_EQUAL(kind, decoded.kind);
@@ -189,7 +269,8 @@ static void an_envelope_travels_before_every_kind(void)
 static void every_single_bit_counts(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
-        const struct mh_message message = enveloped(kind, MH_ENVELOPE_FACE);
+        const struct mh_message message =
+            enveloped(kind, fits(kind, MH_ENVELOPE_FACE) ? MH_ENVELOPE_FACE : MH_ENVELOPE_ROUTE);
         encode(&message);
         for (size_t bit = 0; bit < 8 * length; bit++) {
             frame[bit / 8] = (uint8_t)(frame[bit / 8] ^ 1u << bit % 8);
@@ -203,7 +284,7 @@ static void every_single_bit_counts(void)
 static void every_truncation_is_refused(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
-        for (int envelope = MH_ENVELOPE_NONE; envelope < MH_ENVELOPE_KINDS; envelope++) {
+        for (int envelope = MH_ENVELOPE_NONE; fits(kind, envelope) && envelope < MH_ENVELOPE_KINDS; envelope++) {
             const struct mh_message message = enveloped(kind, (enum mh_envelope_kind)envelope);
             encode(&message);
             for (size_t shorter = 0; shorter < length; shorter++) {
@@ -275,6 +356,77 @@ static void fields_that_nobody_writes_are_corrupt(void)
     }
 }
 
+static void expect_corrupt(const struct mh_message *bad)
+{
+    encode(bad);
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(mh_wire_all, frame, length, &decoded));
+}
+
+static void fields_of_clusters_that_nobody_writes_are_corrupt(void)
+{
+    struct mh_message bad = example(MH_MESSAGE_ASK);
+    bad.as.ask.everyone = 2;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_ASK);
+    bad.as.ask.vy_mmps = 1000000001;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_ANSWER);
+    bad.as.answer.z_mm = INT32_MIN;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_FORM);
+    bad.as.form.count = MH_FORM_MEMBERS + 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_FORM);
+    bad.as.form.count = 3; /* of two */
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_FORM);
+    bad.as.form.count = 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_JOIN);
+    bad.as.join.sender = -1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_HAND_OVER);
+    bad.as.hand_over.part = 2;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_HAND_OVER);
+    bad.as.hand_over.length = MH_HAND_OVER_BYTES + 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_HAND_OVER);
+    bad.as.hand_over.length = MH_HAND_OVER_BYTES - 1; /* something behind the end */
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_ALERT);
+    bad.as.alert.hops = MH_HOPS_MAX + 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_POSITION);
+    bad.as.position.x_mm = 1000000001;
+    expect_corrupt(&bad);
+}
+
+static void what_clusters_say_makes_the_round_trip(void)
+{
+    for (enum mh_message_kind kind = MH_MESSAGE_ASK; kind <= MH_MESSAGE_POSITION; kind++) {
+        const struct mh_message message = example(kind);
+        encode(&message);
+        TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
+        TEST_ASSERT_EQUAL(kind, decoded.kind);
+        uint8_t again[MH_FRAME_MAX];
+        size_t again_length;
+        TEST_ASSERT_EQUAL(MH_OK, mh_wire_encode(mh_wire_all, &decoded, again, &again_length));
+        TEST_ASSERT_EQUAL_MEMORY(frame, again, length);
+        TEST_ASSERT_EQUAL_MEMORY(&message.as.join, &decoded.as.join, sizeof message.as.join); /* three numbers first */
+    }
+    TEST_ASSERT_EQUAL_INT32(1000000000, decoded.as.position.vx_mmps);
+    const struct mh_message form = example(MH_MESSAGE_FORM);
+    encode(&form);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
+    TEST_ASSERT_EQUAL_UINT8(2, decoded.as.form.count);
+    TEST_ASSERT_EQUAL_INT32(11, decoded.as.form.members[1]);
+    const struct mh_message part = example(MH_MESSAGE_HAND_OVER);
+    encode(&part);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
+    TEST_ASSERT_EQUAL_UINT8(255, decoded.as.hand_over.data[MH_HAND_OVER_BYTES - 1]);
+}
+
 static void envelopes_that_nobody_writes_are_corrupt(void)
 {
     for (uint8_t i = 0; i < 8; i++) {
@@ -314,7 +466,7 @@ static void only_what_is_spoken_is_understood(void)
 {
     static mh_wire_types few[] = {&mh_wire_report, &mh_wire_route, NULL};
     for (int kind = 0; kind < MH_MESSAGE_KINDS; kind++) {
-        for (int envelope = MH_ENVELOPE_NONE; envelope < MH_ENVELOPE_KINDS; envelope++) {
+        for (int envelope = MH_ENVELOPE_NONE; fits(kind, envelope) && envelope < MH_ENVELOPE_KINDS; envelope++) {
             const struct mh_message message = enveloped((enum mh_message_kind)kind, (enum mh_envelope_kind)envelope);
             const bool spoken = kind == MH_MESSAGE_REPORT && envelope != MH_ENVELOPE_FACE;
             encode(&message);
@@ -349,14 +501,37 @@ static void a_measurement_survives_its_report(void)
     TEST_ASSERT_EQUAL_UINT8(6, back.target);
 }
 
+static void a_measurement_survives_its_answer(void)
+{
+    const struct mh_measurement measurement = {.node = 0xFFFFFFFEu,
+                                               .place = {1, -2, 3},
+                                               .time = 0xFFFFFFFFu,
+                                               .value = -4,
+                                               .increment = 5,
+                                               .flags = MH_MEASUREMENT_HAS_INCREMENT | MH_MEASUREMENT_ASKED};
+    mh_answer_t answer;
+    struct mh_measurement back;
+    mh_answer_from_measurement(&measurement, &answer);
+    mh_answer_to_measurement(&answer, &back);
+    TEST_ASSERT_EQUAL_UINT32(measurement.node, back.node);
+    TEST_ASSERT_EQUAL_INT32(-2, back.place.y_mm);
+    TEST_ASSERT_EQUAL_INT32(3, back.place.z_mm);
+    TEST_ASSERT_EQUAL_UINT32(measurement.time, back.time);
+    TEST_ASSERT_EQUAL_INT32(-4, back.value);
+    TEST_ASSERT_EQUAL_INT32(0, back.increment);
+    TEST_ASSERT_EQUAL_UINT8(MH_MEASUREMENT_ASKED, back.flags);
+}
+
 /* Random bytes behind a right fingerprint and a right check sum: whatever is accepted encodes to the same bytes. */
 static void any_bytes_are_safe(void)
 {
     uint32_t random = 1;
     uint16_t accepted = 0;
     for (uint16_t trial = 0; trial < 300; trial++) {
-        const struct mh_message message = enveloped((enum mh_message_kind)(trial % MH_MESSAGE_KINDS),
-                                                    (enum mh_envelope_kind)(trial / 7 % MH_ENVELOPE_KINDS));
+        const int kind = (int)(trial % MH_MESSAGE_KINDS),
+                  envelope = (int)(trial / MH_MESSAGE_KINDS % MH_ENVELOPE_KINDS);
+        const struct mh_message message = enveloped(
+            (enum mh_message_kind)kind, fits(kind, envelope) ? (enum mh_envelope_kind)envelope : MH_ENVELOPE_ROUTE);
         encode(&message);
         for (size_t i = 8; i < length - 2; i++) {
             random = random * 1664525u + 1013904223u;
@@ -388,10 +563,13 @@ int main(void)
     RUN_TEST(a_sound_frame_of_wrong_length_is_corrupt);
     RUN_TEST(an_unknown_type_is_told_apart);
     RUN_TEST(fields_that_nobody_writes_are_corrupt);
+    RUN_TEST(fields_of_clusters_that_nobody_writes_are_corrupt);
+    RUN_TEST(what_clusters_say_makes_the_round_trip);
     RUN_TEST(envelopes_that_nobody_writes_are_corrupt);
     RUN_TEST(unknown_kinds_are_not_encoded);
     RUN_TEST(only_what_is_spoken_is_understood);
     RUN_TEST(a_measurement_survives_its_report);
+    RUN_TEST(a_measurement_survives_its_answer);
     RUN_TEST(any_bytes_are_safe);
     port_exit(UNITY_END() > 0);
     return 0;
