@@ -1,5 +1,7 @@
 #include "radio/radio.h"
 
+#include "radio/reception.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,11 +10,6 @@
 
 /* What is weaker than the noise by this much is not felt: it would add 0.4 dB to it. */
 static const double disturbance_db = -10;
-
-enum {
-    LISTED_MAX = 1000, /* receivers of a mote that are kept; more are looked up each time */
-    MEETINGS_MAX = 256 /* transmissions that one can meet; more than can fit beside each other in a cell */
-};
 
 /* What happens: four bits of kind, 28 of index. */
 enum {
@@ -41,75 +38,7 @@ struct radio_frame {
     uint8_t bytes[MH_FRAME_MAX];
 };
 
-struct radio_receivers {
-    uint32_t count;
-    uint32_t mote[];
-};
-
-enum mac_state { MAC_IDLE, MAC_BACKOFF, MAC_TURNING, MAC_SENDING, MAC_WAITING };
-enum ack_state { ACK_NONE, ACK_TURNING, ACK_SENDING };
-
-struct radio_mote {
-    sim_time due;         /* of the event that the MAC waits for: others are out of date */
-    sim_time awake;       /* listens since, if it does */
-    sim_time powered;     /* since when it has not been off */
-    uint32_t first, last; /* of its queue; NONE, NONE: empty */
-    struct csma csma;
-    uint32_t flight; /* being sent, frame or acknowledgement */
-    uint32_t ack_to;
-    uint16_t queued;
-    uint16_t signals; /* that arrive above the sensitivity, if states are shown ... */
-    uint16_t caught;  /* ... of these, begun in a wake window */
-    uint8_t power, mac, ack, mac_cause, ack_cause, signal_cause;
-    uint8_t shown, shown_cause; /* as last told */
-};
-
 /* ---- making ---- */
-
-struct radio_config radio_config_of(const struct scenario *scenario, double range_m)
-{
-    struct radio_config config = {.profile = *radio_profile_find(scenario->radio.profile),
-                                  .channel = {.loss = scenario->radio.loss,
-                                              .burst_loss = scenario->radio.burst_loss,
-                                              .good_s = scenario->radio.burst_good_s,
-                                              .bad_s = scenario->radio.burst_bad_s},
-                                  .queue = (unsigned)scenario->radio.queue};
-    if (scenario->radio.wake_period_s > 0) {
-        config.wake_period = (sim_time)llround(scenario->radio.wake_period_s * SIM_TIME_PER_S);
-        config.wake_length = (sim_time)llround(scenario->radio.wake_length_s * SIM_TIME_PER_S);
-    }
-    struct radio_profile *profile = &config.profile;
-    faults_make(&config.channel.faults, scenario, 0); /* those of the channel are not drawn */
-    if (!profile->contention) {
-        profile->bitrate_bps = scenario->radio.bitrate_bps;
-    }
-    if (scenario->radio.sensitivity_dbm < 0) {
-        profile->sensitivity_dbm = scenario->radio.sensitivity_dbm;
-    }
-    if (scenario->radio.retries >= 0) {
-        profile->retries = (unsigned)scenario->radio.retries;
-    }
-    if (scenario->radio.backoffs >= 0) {
-        profile->backoffs = (unsigned)scenario->radio.backoffs;
-    }
-    config.propagation = (struct propagation_config){
-        .kind = isinf(range_m) ? PROPAGATION_DISC : scenario->radio.propagation,
-        .range_m = range_m,
-        .power_dbm = scenario->radio.power_dbm,
-        .exponent = scenario->radio.path_loss_exponent,
-        .reference_loss_db = scenario->radio.reference_loss_db,
-        .shadowing_db = scenario->radio.shadowing_db,
-    };
-    return config;
-}
-
-double radio_nominal_range_m(const struct scenario *scenario)
-{
-    struct radio_config config = radio_config_of(scenario, scenario->radio.range_m);
-    config.propagation.shadowing_db = 0;
-    const struct propagation propagation = propagation_make(&config.propagation, 0, 0);
-    return propagation_reach_m(&propagation, mw_from_dbm(config.profile.sensitivity_dbm));
-}
 
 /* In a disc every signal has power 1: noise there is none, of two that overlap neither is received, and the channel is busy if there
  * is a signal at any time of its assessment. */
@@ -245,18 +174,6 @@ struct run {
 
 /* ---- states ---- */
 
-static bool listens(const struct radio_mote *mote)
-{
-    return mote->power == RADIO_POWER_ON || (mote->power == RADIO_POWER_ASLEEP && (mote->mac || mote->ack));
-}
-
-/* A radio that sleeps is open. */
-static bool wakes(const struct radio *radio, sim_time time)
-{
-    const struct radio_config *config = &radio->config;
-    return config->wake_period > 0 && time % config->wake_period < config->wake_length;
-}
-
 /* A radio that waits to send, or for an answer, listens for its frame's cause. */
 static void show(const struct run *run, uint32_t index)
 {
@@ -266,7 +183,7 @@ static void show(const struct run *run, uint32_t index)
     }
     const enum radio_state state = mote->power == RADIO_POWER_OFF                         ? RADIO_OFF
                                    : mote->mac == MAC_SENDING || mote->ack == ACK_SENDING ? RADIO_TRANSMIT
-                                   : !listens(mote) && mote->caught == 0                  ? RADIO_SLEEP
+                                   : !radio_mote_listens(mote) && mote->caught == 0       ? RADIO_SLEEP
                                    : mote->signals > 0                                    ? RADIO_RECEIVE
                                                                                           : RADIO_LISTEN;
     const uint8_t own = mote->ack ? mote->ack_cause : mote->mac ? mote->mac_cause : 0;
@@ -282,7 +199,7 @@ static void open_or_close(const struct run *run, uint32_t index)
 {
     const struct radio_mote *mote = &run->radio->motes[index];
     sim_time *open = &run->radio->open[index];
-    if (!listens(mote) || mote->mac == MAC_TURNING || mote->mac == MAC_SENDING || mote->ack == ACK_SENDING) {
+    if (!radio_mote_listens(mote) || mote->mac == MAC_TURNING || mote->mac == MAC_SENDING || mote->ack == ACK_SENDING) {
         *open = SIM_TIME_NEVER;
     } else if (*open == SIM_TIME_NEVER) {
         *open = run->now + run->radio->turnaround;
@@ -292,7 +209,7 @@ static void open_or_close(const struct run *run, uint32_t index)
 static void enter(const struct run *run, uint32_t index, enum mac_state state, uint8_t cause)
 {
     struct radio_mote *mote = &run->radio->motes[index];
-    if (!listens(mote)) {
+    if (!radio_mote_listens(mote)) {
         mote->awake = run->now;
     }
     mote->mac = (uint8_t)state;
@@ -304,7 +221,7 @@ static void enter(const struct run *run, uint32_t index, enum mac_state state, u
 static void enter_ack(const struct run *run, uint32_t index, enum ack_state state)
 {
     struct radio_mote *mote = &run->radio->motes[index];
-    if (!listens(mote)) {
+    if (!radio_mote_listens(mote)) {
         mote->awake = run->now;
     }
     mote->ack = (uint8_t)state;
@@ -312,55 +229,17 @@ static void enter_ack(const struct run *run, uint32_t index, enum ack_state stat
     show(run, index);
 }
 
-/* ---- who is in reach ---- */
-
-/* Who receives `sender` when nothing disturbs: into radio->found, in the order of the places, which is
- * that in which the motes' memory lies. Returns their number. */
-static uint32_t look_up_receivers(const struct radio *radio, uint32_t sender)
-{
-    const size_t near = places_within(&radio->places, sender, radio->reach_m, radio->found);
-    const struct place *place = places_at(&radio->places, sender);
-    uint32_t count = 0;
-    for (size_t i = 0; i < near; i++) {
-        const uint32_t index = radio->found[i];
-        if (propagation_power(&radio->propagation, place, places_at(&radio->places, index)) >= radio->sensitivity) {
-            radio->found[count++] = index;
-        }
-    }
-    return count;
-}
-
-static const uint32_t *receivers_of(struct radio *radio, uint32_t sender, uint32_t *count)
-{
-    struct radio_receivers *list = radio->receivers[sender];
-    if (list) {
-        *count = list->count;
-        return list->mote;
-    }
-    *count = look_up_receivers(radio, sender);
-    if (*count <= LISTED_MAX && (list = malloc(sizeof *list + *count * sizeof *list->mote)) != NULL) {
-        list->count = *count;
-        memcpy(list->mote, radio->found, *count * sizeof *list->mote);
-        radio->receivers[sender] = list;
-        return list->mote;
-    }
-    return radio->found;
-}
-
-static double power_between(const struct radio *radio, uint32_t a, uint32_t b)
-{
-    return propagation_power(&radio->propagation, places_at(&radio->places, a), places_at(&radio->places, b));
-}
+/* ---- those in reach ---- */
 
 /* All that may hear a transmission, which started at `start`, begin or cease to receive it. */
 static void show_signal(const struct run *run, uint32_t sender, sim_time start, uint8_t cause, int change)
 {
-    const int caught = wakes(run->radio, start) ? change : 0;
+    const int caught = radio_wakes(run->radio, start) ? change : 0;
     if (!run->sink->state) {
         return;
     }
     uint32_t count;
-    const uint32_t *receivers = receivers_of(run->radio, sender, &count);
+    const uint32_t *receivers = reception_receivers(run->radio, sender, &count);
     for (uint32_t i = 0; i < count; i++) {
         struct radio_mote *mote = &run->radio->motes[receivers[i]];
         mote->signals = (uint16_t)(mote->signals + change);
@@ -368,133 +247,6 @@ static void show_signal(const struct run *run, uint32_t sender, sim_time start, 
         mote->signal_cause = change > 0 ? cause : mote->signal_cause;
         show(run, receivers[i]);
     }
-}
-
-/* ---- the air ---- */
-
-/* Average power at a mote since `from`, or HUGE_VAL if it has itself been sending. */
-static double energy(const struct run *run, uint32_t mote, sim_time from)
-{
-    struct radio *radio = run->radio;
-    uint32_t found[MEETINGS_MAX];
-    const struct place *place = places_at(&radio->places, mote);
-    size_t count = air_find(&radio->air, place, from, run->now, found, MEETINGS_MAX);
-    count = count < MEETINGS_MAX ? count : MEETINGS_MAX;
-    double sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        const struct flight *flight = &radio->air.flights[found[i]];
-        if (flight->sender == mote) {
-            return HUGE_VAL;
-        }
-        const sim_time start = flight->start > from ? flight->start : from;
-        const sim_time end = flight->end < run->now ? flight->end : run->now;
-        sum += power_between(radio, flight->sender, mote) * (double)(end - start);
-    }
-    return sum / (double)(run->now - from);
-}
-
-/* Transmissions that one has met. */
-struct meetings {
-    size_t count;
-    struct flight flight[MEETINGS_MAX];
-};
-
-static void find_meetings(const struct run *run, const struct flight *flight, uint32_t itself,
-                          struct meetings *meetings)
-{
-    struct radio *radio = run->radio;
-    uint32_t found[MEETINGS_MAX];
-    const sim_time from = flight->start > radio->turnaround ? flight->start - radio->turnaround : 0;
-    const struct place *place = places_at(&radio->places, flight->sender);
-    size_t count = air_find(&radio->air, place, from, run->now, found, MEETINGS_MAX);
-    count = count < MEETINGS_MAX ? count : MEETINGS_MAX;
-    meetings->count = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (found[i] != itself) {
-            meetings->flight[meetings->count++] = radio->air.flights[found[i]];
-        }
-    }
-}
-
-/* Interference is largest when some disturbing transmission has just begun. */
-static bool drowns(const struct radio *radio, const struct flight *flight, uint32_t receiver,
-                   const struct meetings *meetings)
-{
-    double power[MEETINGS_MAX];
-    double sum = 0;
-    for (size_t i = 0; i < meetings->count; i++) {
-        const struct flight *other = &meetings->flight[i];
-        power[i] = other->end > flight->start ? power_between(radio, other->sender, receiver) : 0;
-        power[i] = power[i] < radio->disturbance ? 0 : power[i];
-        sum += power[i];
-    }
-    if (!(sum > 0)) {
-        return false;
-    }
-    const double bearable = power_between(radio, flight->sender, receiver) / radio->capture - radio->noise;
-    for (size_t i = 0; i < meetings->count && sum > bearable; i++) {
-        const sim_time start = meetings->flight[i].start;
-        const sim_time instant = start > flight->start ? start : flight->start;
-        double interference = 0;
-        for (size_t j = 0; j < meetings->count; j++) {
-            const struct flight *other = &meetings->flight[j];
-            interference += other->start <= instant && instant < other->end ? power[j] : 0;
-        }
-        if (interference > bearable) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* The receiver has been sending, is about to, or has not turned round in time. */
-static bool was_deaf(const struct radio *radio, uint32_t receiver, const struct meetings *meetings)
-{
-    if (radio->motes[receiver].mac == MAC_TURNING) {
-        return true;
-    }
-    for (size_t i = 0; i < meetings->count; i++) {
-        if (meetings->flight[i].sender == receiver) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* A receiver in range was not open all the time, or something has disturbed it. What does it make of a transmission? LOSS_NONE:
- * it has it. */
-static enum loss_reason look_closer(const struct radio *radio, const struct flight *flight, uint32_t receiver,
-                                    const struct meetings *meetings)
-{
-    const struct radio_mote *mote = &radio->motes[receiver];
-    if (mote->power == RADIO_POWER_OFF || flight->cut) {
-        return LOSS_DEAD;
-    }
-    const bool awake = listens(mote) && mote->awake <= flight->start;
-    const bool woken = mote->powered <= flight->start && wakes(radio, flight->start);
-    if (!awake && !woken) {
-        return LOSS_ASLEEP;
-    }
-    if (meetings && was_deaf(radio, receiver, meetings)) {
-        return LOSS_DEAF;
-    }
-    return meetings && drowns(radio, flight, receiver, meetings) ? LOSS_COLLISION : LOSS_NONE;
-}
-
-/* What a receiver in range makes of a transmission: LOSS_NONE if it has it. */
-static enum loss_reason judge(const struct run *run, const struct flight *flight, uint32_t receiver,
-                              const struct meetings *meetings)
-{
-    struct radio *radio = run->radio;
-    const bool undisturbed =
-        radio->open[receiver] <= flight->start && !flight->cut && (!meetings || meetings->count == 0);
-    const enum loss_reason reason = undisturbed ? LOSS_NONE : look_closer(radio, flight, receiver, meetings);
-    if (reason != LOSS_NONE || channel_is_quiet(&radio->channel)) {
-        return reason;
-    }
-    const struct passage passage = {flight->number, flight->start, run->now, places_at(&radio->places, flight->sender),
-                                    places_at(&radio->places, receiver)};
-    return channel_verdict(&radio->channel, &passage);
 }
 
 /* The end of a frame: who has received it, now for the first time, is told. Returns whether the addressee has. */
@@ -505,15 +257,14 @@ static bool deliver(const struct run *run, const struct flight *flight, const st
     uint32_t count = 1;
     const uint32_t *receivers = &flight->destination;
     if (flight->destination == RADIO_ALL) {
-        receivers = receivers_of(radio, flight->sender, &count);
-    } else if (flight->destination == flight->sender ||
-               power_between(radio, flight->sender, flight->destination) < radio->sensitivity) {
+        receivers = reception_receivers(radio, flight->sender, &count);
+    } else if (!reception_in_reach(radio, flight->sender, flight->destination)) {
         radio->counters.lost[LOSS_RANGE]++;
         return false;
     }
     uint32_t received = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const enum loss_reason reason = judge(run, flight, receivers[i], meetings);
+        const enum loss_reason reason = reception_judge(radio, flight, receivers[i], meetings, run->now);
         if (reason == LOSS_NONE) {
             radio->found[received++] = receivers[i];
         } else {
@@ -611,7 +362,8 @@ static void assessed(const struct run *run, uint32_t index)
     if (!waits(run, index, MAC_BACKOFF)) {
         return;
     }
-    if (mote->ack != ACK_NONE || energy(run, index, run->now - rounded(profile->cca_us)) >= radio->cca_threshold) {
+    if (mote->ack != ACK_NONE ||
+        reception_power(radio, index, run->now - rounded(profile->cca_us), run->now) >= radio->cca_threshold) {
         busy(run, index);
         return;
     }
@@ -716,7 +468,7 @@ static void ack_ends(const struct run *run, const struct flight *flight, const s
     }
     const struct radio_mote *waiting = &radio->motes[flight->destination];
     const bool expected = waiting->mac == MAC_WAITING && radio->frames[waiting->first].destination == flight->sender;
-    if (expected && judge(run, flight, flight->destination, meetings) == LOSS_NONE) {
+    if (expected && reception_judge(radio, flight, flight->destination, meetings, run->now) == LOSS_NONE) {
         finish(run, flight->destination, MH_SENT_OK);
     } else {
         radio->counters.acks_lost++;
@@ -728,7 +480,7 @@ static void flight_ends(const struct run *run, uint32_t index)
     struct radio *radio = run->radio;
     const struct flight flight = radio->air.flights[index];
     struct meetings meetings;
-    find_meetings(run, &flight, index, &meetings);
+    reception_meetings(radio, &flight, index, run->now, &meetings);
     show_signal(run, flight.sender, flight.start, flight.cause, -1);
     if (!flight.cut) {
         radio->motes[flight.sender].flight = NONE;
@@ -861,7 +613,7 @@ static void drop_all(struct radio *radio, struct radio_mote *mote)
 static void switch_power(const struct run *run, uint32_t index, enum radio_power power)
 {
     struct radio_mote *mote = &run->radio->motes[index];
-    const bool listened = listens(mote);
+    const bool listened = radio_mote_listens(mote);
     if (power == RADIO_POWER_OFF) {
         drop_all(run->radio, mote);
     }
@@ -869,7 +621,7 @@ static void switch_power(const struct run *run, uint32_t index, enum radio_power
         mote->powered = run->now;
     }
     mote->power = (uint8_t)power;
-    if (!listened && listens(mote)) {
+    if (!listened && radio_mote_listens(mote)) {
         mote->awake = run->now;
     }
     open_or_close(run, index);
