@@ -11,6 +11,7 @@
 #include "world/recipe.h"
 #include "world/trajectory.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #define MOBILITY_SLOWEST 0.1 /* of the mean speed */
@@ -27,8 +28,25 @@ struct mobility {
 /* That of scenario->target: a step each sensor.interval_s, the margin sensor.range_m so that nodes lie all around it. */
 struct mobility mobility_of(const struct scenario *scenario);
 
-/* Its place at steps 0 ... steps, so positions holds steps + 1 of them; start, mean heading and disturbances are the recipe's for `seed`.
- * A step is shorter than the way between the margins. */
+/* Where it is and how it moves there. */
+struct mobility_state {
+    struct point at;
+    double speed_mps;
+    double heading_rad, mean_heading_rad;
+    bool reflected_x, reflected_y; /* by the step that led here */
+};
+
+/* At step 0: place and mean heading are the recipe's for `seed`, speed and heading their means. */
+struct mobility_state mobility_start(const struct mobility *mobility, uint64_t seed);
+
+/* One step on, disturbed by the standard normal numbers given. A step is shorter than the way between the margins. */
+void mobility_step(const struct mobility *mobility, double speed_disturbance, double heading_disturbance,
+                   struct mobility_state *state);
+
+/* Step `n`, from 1, with the recipe's disturbances for `seed`. */
+void mobility_next(const struct mobility *mobility, uint64_t seed, size_t n, struct mobility_state *state);
+
+/* Its place at steps 0 ... steps, so positions holds steps + 1 of them. */
 void mobility_positions(const struct mobility *mobility, uint64_t seed, size_t steps, struct point *positions);
 
 #endif
