@@ -42,15 +42,14 @@ enum energy_cause account_cause(enum mh_message_kind kind)
     case MH_MESSAGE_REPORT:
     case MH_MESSAGE_POSITION:
         return ENERGY_REPORTING;
-    case MH_MESSAGE_ASK:
-    case MH_MESSAGE_ANSWER:
-        return ENERGY_LOCALISATION;
     case MH_MESSAGE_FORM:
     case MH_MESSAGE_JOIN:
     case MH_MESSAGE_HAND_OVER:
     case MH_MESSAGE_ALERT:
         return ENERGY_CLUSTERING;
     case MH_MESSAGE_REQUEST:
+    case MH_MESSAGE_ASK:
+    case MH_MESSAGE_ANSWER:
         return ENERGY_MEASURING;
     case MH_MESSAGE_SYNC:
         return ENERGY_TIME;
