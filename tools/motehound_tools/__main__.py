@@ -15,19 +15,17 @@ def parser() -> argparse.ArgumentParser:
     )
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    report = commands.add_parser("report", help="one HTML page from an output folder of the command or of a sweep")
+    report = commands.add_parser("report", help="one HTML page of a run's results, or of those of sweeps")
     report.add_argument("folder", type=Path, metavar="OUT_DIR")
     report.add_argument("--html", type=Path, help="the page to write (OUT_DIR/report.html)")
 
-    sweep = commands.add_parser("sweep", help="run a scenario for each value of a key; finished values are skipped")
-    sweep.add_argument("scenario", metavar="SCENARIO")
-    sweep.add_argument("--key", required=True, help="such as sensor.interval_s")
-    sweep.add_argument("--values", required=True, help="separated by commas")
-    sweep.add_argument("--runs", type=int, default=50)
-    sweep.add_argument("--seed", type=int, default=0)
-    sweep.add_argument("--out", type=Path, required=True)
+    sweep = commands.add_parser("sweep", help="run what is missing of an experiment and write its table")
+    sweep.add_argument("experiment", type=Path, metavar="EXPERIMENT.yaml")
+    sweep.add_argument("--out", type=Path, help="the folder (out/EXPERIMENT)")
+    sweep.add_argument("--seeds", metavar="SEEDS", help="such as 0-19 or 3,5,8, instead of the experiment's")
+    sweep.add_argument("--jobs", type=int, metavar="N", help="runs at the same time on this machine (its processors)")
     sweep.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUE", help="for every value; may be repeated"
+        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the runs, such as tcp://host:8786"
     )
 
     results = commands.add_parser("results", help="run the published experiments and write the table of results")
@@ -70,16 +68,6 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-def settings(pairs: list[str]) -> dict[str, str]:
-    chosen = {}
-    for pair in pairs:
-        key, equals, value = pair.partition("=")
-        if not equals or not key:
-            raise Failure(f"--set {pair}: expected KEY=VALUE")
-        chosen[key] = value
-    return chosen
-
-
 def perform(arguments: argparse.Namespace) -> None:
     # Each part is imported when it is asked for: drawing alone takes a second to load.
     if arguments.command == "report":
@@ -89,22 +77,12 @@ def perform(arguments: argparse.Namespace) -> None:
         report.write(arguments.folder, page)
         print(page)
     elif arguments.command == "sweep":
-        from . import command, sweep
+        from . import sweep
 
-        values = [value.strip() for value in arguments.values.split(",") if value.strip()]
-        if not values or arguments.runs < 1:
-            raise Failure("--values needs at least one value and --runs at least 1")
-        program = command.find(arguments.motehound)
-        sweep.run(
-            program,
-            arguments.scenario,
-            arguments.key,
-            values,
-            arguments.runs,
-            arguments.seed,
-            arguments.out,
-            settings(arguments.set),
-        )
+        if arguments.jobs is not None and (arguments.jobs < 1 or arguments.scheduler):
+            raise Failure("--jobs: expected 1 or more, and no --scheduler, whose workers decide for themselves")
+        chosen = (arguments.out, arguments.seeds, arguments.jobs, arguments.scheduler, arguments.motehound)
+        print(sweep.run(arguments.experiment, *chosen) / "table.csv")
     elif arguments.command == "results":
         from . import command, results
 

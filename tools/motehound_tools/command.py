@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -43,3 +44,23 @@ def run(
     if done.returncode:
         lines = done.stderr.strip().splitlines()
         raise Failure(lines[-1] if lines else f"{program}: exit status {done.returncode}")
+
+
+def is_complete(folder: Path, runs: int, seed: int, program: Path) -> bool:
+    """Whether as many runs from this seed are there, whole as all files of the command, and younger than it."""
+    try:
+        if (folder / "summary.json").stat().st_mtime < program.stat().st_mtime:
+            return False
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(summary, dict) and summary.get("runs") == runs and summary.get("seed") == seed
+
+
+def keys(program: Path) -> dict[str, str]:
+    """Of every key of a scenario what its values are, as `motehound list --keys` words it."""
+    try:
+        told = subprocess.run([str(program), "list", "--keys"], capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise Failure(f"{program}: {error}") from None
+    return {line.split(None, 2)[0]: line.split(None, 2)[2] for line in told.stdout.splitlines()}

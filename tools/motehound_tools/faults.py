@@ -7,14 +7,12 @@ from pathlib import Path
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from rich.console import Console
 
-from . import command, output
+from . import batch, output
 from .metrics import errors, rms
 from .output import Output
 from .report import number
 from .scenario import Array
-from .sweep import is_complete, progress
 
 FAULTS = {
     "none": "none",
@@ -122,14 +120,11 @@ def write(program: Path, out: Path, markdown: Path, runs: int) -> None:
             opened[folder] = found
         return opened[folder]
 
-    with progress(Console(stderr=True)) as bar:
-        task = bar.add_task("", total=len(FAULTS) * len(RADIOS))
-        for fault in FAULTS:
-            for radio in RADIOS:
-                folder = out / f"runs={runs}" / f"{fault}_{radio}"
-                bar.update(task, description=folder.name)
-                if not is_complete(folder, runs, 0, program):
-                    command.run(program, f"faults_{fault}", folder, runs, 0, {"radio.profile": radio})
-                bar.update(task, advance=1)
+    calls = {
+        f"{fault}_{radio}": (f"faults_{fault}", out / f"runs={runs}" / f"{fault}_{radio}", {"radio.profile": radio})
+        for fault in FAULTS
+        for radio in RADIOS
+    }
+    batch.folders(program, calls, runs)
     markdown.parent.mkdir(parents=True, exist_ok=True)
     markdown.write_text(page(read, runs), encoding="utf-8")

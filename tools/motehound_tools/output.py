@@ -76,7 +76,7 @@ class Output:
             summary = json.loads(file.read_text(encoding="utf-8"))
         except OSError as error:
             raise Failure(
-                f"{file}: {error.strerror}; expected an output folder of `motehound run` or `sweep`"
+                f"{file}: {error.strerror}; expected an output folder of `motehound run` or of `tools/sweep`"
             ) from None
         except ValueError as error:
             raise Failure(f"{file}: not JSON: {error}") from None
@@ -127,7 +127,7 @@ class Sweep:
 
 
 def read(folder: Path) -> Output | Sweep:
-    """The folder of one call, or of a sweep: a sub-folder for each value, named `value` or `key=value`."""
+    """The folder of one call, or of one with --sweep: a sub-folder for each value, named after it."""
     if not folder.is_dir():
         raise Failure(f"{folder}: no such folder")
     parts = [child for child in sorted(folder.iterdir()) if (child / "summary.json").exists()]
@@ -136,7 +136,7 @@ def read(folder: Path) -> Output | Sweep:
     try:
         parts.sort(key=_swept_value)
     except ValueError:
-        raise Failure(f"{folder}: the sub-folders of a sweep are named `value` or `key=value`, with numbers") from None
+        raise Failure(f"{folder}: the sub-folders of a sweep are named after its values, numbers") from None
     outputs = [Output.read(part) for part in parts]
     keys = {_swept_key(one) for one in outputs}
     if len(keys) != 1:
@@ -145,9 +145,8 @@ def read(folder: Path) -> Output | Sweep:
 
 
 def _swept_value(folder: Path) -> float:
-    return float(folder.name.rpartition("=")[2])
+    return float(folder.name)
 
 
 def _swept_key(one: Output) -> str:
-    named = one.folder.name.rpartition("=")[0]
-    return named or (str(one.scenario.value("sweep.key")) if one.scenario else "value")
+    return str(one.scenario.value("sweep.key")) if one.scenario else "value"

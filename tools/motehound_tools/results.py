@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from rich.console import Console
 
-from . import bound, command, output
-from .experiments import (
+from . import batch, bound, output
+from .luo import (
     CONDITIONS,
     FOUND_M,
     LOW,
@@ -29,7 +28,6 @@ from .experiments import (
 from .failure import Failure
 from .output import Output
 from .report import number
-from .sweep import is_complete, progress
 
 Read = Callable[[Case], Output]
 Bounds = dict[str, dict[str, dict[str, float]]]  # by bounded(), as bound.over_deployments gives them
@@ -137,14 +135,14 @@ def bounded(case: Case) -> str:
     return Case(case.path, "bound", world).folder
 
 
-def bounds_of(out: Path, read: Read, seeds: int, advance: Callable[[str], None]) -> Bounds:
+def bounds_of(out: Path, read: Read, seeds: int, advance: Callable[[], None]) -> Bounds:
     """The bound of every noisy condition, each kept in a file beside the runs."""
     found: Bounds = {}
     for condition in CONDITIONS:
         for path in PATHS:
             case = Case(path, "diffusion", condition.settings)
             name = bounded(case)
-            advance(name)
+            advance()
             if not condition.settings or name in found:
                 continue
             kept = out / "bounds" / f"{name}_seeds={seeds}.json"
@@ -179,8 +177,6 @@ def page(read: Read, bounds: Bounds, runs: int, bound_seeds: int) -> str:
 
 def write(program: Path, out: Path, markdown: Path, runs: int) -> None:
     bound_seeds = 4 if runs >= 50 else 1
-    console = Console(stderr=True)
-    every = cases()
     opened: dict[str, Output] = {}
 
     def read(case: Case) -> Output:
@@ -190,18 +186,16 @@ def write(program: Path, out: Path, markdown: Path, runs: int) -> None:
             opened[case.folder] = found
         return opened[case.folder]
 
-    with progress(console) as bar:
-        task = bar.add_task("", total=len(every) + len(CONDITIONS) * len(PATHS))
-
-        def advance(description: str) -> None:
-            bar.update(task, advance=1, description=description)
-
-        for case in every:
-            folder = out / f"runs={runs}" / case.folder
-            bar.update(task, description=case.folder)
-            if not is_complete(folder, runs, 0, program):
-                command.run(program, PATHS[case.path], folder, runs, 0, {**case.settings, "tracker.name": case.tracker})
-            advance(case.folder)
+    calls = {
+        case.folder: (
+            PATHS[case.path],
+            out / f"runs={runs}" / case.folder,
+            {**case.settings, "tracker.name": case.tracker},
+        )
+        for case in cases()
+    }
+    batch.folders(program, calls, runs)
+    with batch.progress("bounds", len(CONDITIONS) * len(PATHS)) as advance:
         bounds = bounds_of(out, read, bound_seeds, advance)
     markdown.parent.mkdir(parents=True, exist_ok=True)
     markdown.write_text(page(read, bounds, runs, bound_seeds), encoding="utf-8")

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import write_output
 
-from motehound_tools import figures, metrics, output, sweep
+from motehound_tools import command, figures, metrics, output
 from motehound_tools.report import number
 
 TOOLS = Path(__file__).resolve().parents[1]
@@ -119,7 +119,10 @@ def test_metrics_of_the_command_are_known() -> None:
 
 def test_page_of_a_sweep(tmp_path: Path) -> None:
     for value in (0.5, 1, 10):
-        write_output(tmp_path / f"sensor.interval_s={value}", error_m=value / 3.0)
+        folder = write_output(tmp_path / str(value), error_m=value / 3.0)
+        scenario = json.loads((folder / "scenario.json").read_text())
+        scenario["sweep"] = {"key": "sensor.interval_s", "values": ["0.5", "1", "10"]}
+        (folder / "scenario.json").write_text(json.dumps(scenario))
     done = call("report", tmp_path, "--html", tmp_path / "page.html")
     assert done.returncode == 0, done.stderr
     page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
@@ -241,11 +244,11 @@ def test_recomputed_metrics_of_a_known_track(folder: Path) -> None:
 
 def test_complete_folders_are_recognised(folder: Path) -> None:
     program = Path(__file__)
-    assert sweep.is_complete(folder, 3, 0, program)
-    assert not sweep.is_complete(folder, 4, 0, program)
-    assert not sweep.is_complete(folder / "absent", 3, 0, program)
+    assert command.is_complete(folder, 3, 0, program)
+    assert not command.is_complete(folder, 4, 0, program)
+    assert not command.is_complete(folder / "absent", 3, 0, program)
     os.utime(folder / "summary.json", (1, 1))
-    assert not sweep.is_complete(folder, 3, 0, program)  # older than the program
+    assert not command.is_complete(folder, 3, 0, program)  # older than the program
 
 
 @pytest.mark.parametrize(

@@ -8,22 +8,22 @@ from pathlib import Path
 import pytest
 from conftest import write_output
 
-from motehound_tools import command, experiments, metrics, output, results
+from motehound_tools import command, luo, metrics, output, results
 from motehound_tools.failure import Failure
 
 
 def test_every_case_has_its_own_folder() -> None:
-    every = experiments.cases()
+    every = luo.cases()
     assert len({case.folder for case in every}) == len(every)
     assert {case.path for case in every} == {"E1", "E2"}
 
 
 def test_verdicts() -> None:
-    case = experiments.Case("E1", "luo")
-    about = experiments.near("", case, "position_rmse_m", 3.5, 0.1)
+    case = luo.Case("E1", "luo")
+    about = luo.near("", case, "position_rmse_m", 3.5, 0.1)
     assert about.holds(3.84) and about.holds(3.16) and not about.holds(3.86) and not about.holds(3.14)
-    assert experiments.at_most("", case, "position_rmse_m", 0.4).holds(0.4)
-    assert not experiments.at_most("", case, "position_rmse_m", 0.4).holds(float("nan"))
+    assert luo.at_most("", case, "position_rmse_m", 0.4).holds(0.4)
+    assert not luo.at_most("", case, "position_rmse_m", 0.4).holds(float("nan"))
 
 
 def test_page_of_made_up_runs(tmp_path: Path) -> None:
@@ -34,7 +34,7 @@ def test_page_of_made_up_runs(tmp_path: Path) -> None:
         "0.5": {"rms_m": 0.1765, "median_m": 0.1},
         "0.05": {"rms_m": 0.05, "median_m": 0.05},
     }
-    bounds = {results.bounded(experiments.Case("E1", "diffusion", experiments.LOW)): limit}
+    bounds = {results.bounded(luo.Case("E1", "diffusion", luo.LOW)): limit}
     page = results.page(lambda case: found, bounds, 3, 1)
     tables = [line for line in page.splitlines() if line.startswith("|")]
     for line in tables:
@@ -50,7 +50,7 @@ def simulated(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
     except Failure as failure:
         pytest.skip(str(failure))
     folder = tmp_path_factory.mktemp("simulated") / "out"
-    settings = {**experiments.LOW, "source.speed_mps": "2", "network.nodes": "640", "tracker.name": request.param}
+    settings = {**luo.LOW, "source.speed_mps": "2", "network.nodes": "640", "tracker.name": request.param}
     command.run(program, "luo_exp1", folder, 3, 7, settings)
     found = output.read(folder)
     assert isinstance(found, output.Output)
