@@ -46,6 +46,15 @@
 #define MH_DIFFUSION_SILENCE 10
 #endif
 
+/* Particles of the trackers `pftl` and `msl`: 12 bytes each, of `msl` 20. The work grows in proportion; more than 50 bring `pftl` little. */
+#ifndef MH_PARTICLES_MAX
+#ifdef __AVR__
+#define MH_PARTICLES_MAX 50
+#else
+#define MH_PARTICLES_MAX 200
+#endif
+#endif
+
 /* A track that is handed from head to head, in bytes. The tracker `msl` hands over as many of its particles as find room. */
 #ifndef MH_TRACK_BYTES_MAX
 #ifdef __AVR__
@@ -158,6 +167,9 @@
 #endif
 #if MH_DIFFUSION_COAST < 1 || MH_DIFFUSION_COAST > 250 || MH_DIFFUSION_SILENCE < 1 || MH_DIFFUSION_SILENCE > 250
 #error "MH_DIFFUSION_COAST and MH_DIFFUSION_SILENCE must be 1 to 250: intervals of up to an hour, counted in ticks"
+#endif
+#if MH_PARTICLES_MAX < 1 || MH_PARTICLES_MAX > 4096
+#error "MH_PARTICLES_MAX must be 1 to 4096: a step draws up to 200 times as many, in one go"
 #endif
 #if MH_TRACK_BYTES_MAX < 64 || MH_TRACK_BYTES_MAX > 1024
 #error "MH_TRACK_BYTES_MAX must be 64 to 1024: a constant-velocity filter takes 60, and each part of it is a frame"

@@ -30,6 +30,20 @@ struct mh_region {
     int32_t x_min_mm, x_max_mm, y_min_mm, y_max_mm;
 };
 
+/* (cos angle, sin angle) for |angle| <= pi, each within 3e-6: by polynomials of half the angle, without branches, so that a loop of them is
+ * vectorised where the processor can. 16 multiplications. */
+static inline struct mh_vec2 mh_direction(mh_real angle)
+{
+    const mh_real half = 0.5f * angle, square = half * half;
+    const mh_real sine =
+        half * (9.99996616e-1f + square * (-1.66648284e-1f + square * (8.30632523e-3f - square * 1.83636540e-4f)));
+    const mh_real cosine =
+        9.99999953e-1f +
+        square * (-4.99999053e-1f + square * (4.16635847e-2f + square * (-1.38537043e-3f + square * 2.31539316e-5f)));
+    const struct mh_vec2 direction = {cosine * cosine - sine * sine, 2.0f * sine * cosine};
+    return direction;
+}
+
 /* True if mm may be a coordinate of a place. */
 static inline bool mh_coordinate_valid(int32_t mm) { return mm >= -MH_COORDINATE_MAX_MM && mm <= MH_COORDINATE_MAX_MM; }
 

@@ -7,6 +7,8 @@
 #include "motehound/real.h"
 #include "motehound/ticks.h"
 
+#include <stddef.h>
+
 typedef uint32_t mh_node_id;
 
 enum {
@@ -29,5 +31,20 @@ struct mh_interest {
     struct mh_place centre;
     uint32_t radius_mm;
 };
+
+/* Mean place of the nodes that measured, relative to `origin`; count >= 1. */
+static inline struct mh_vec2 mh_centroid(const struct mh_measurement *measurements, size_t count,
+                                         const struct mh_place *origin)
+{
+    struct mh_vec2 sum = {0, 0};
+    for (size_t i = 0; i < count; i++) {
+        const struct mh_vec2 at = mh_place_relative(&measurements[i].place, origin);
+        sum.x += at.x;
+        sum.y += at.y;
+    }
+    sum.x /= (mh_real)count;
+    sum.y /= (mh_real)count;
+    return sum;
+}
 
 #endif

@@ -17,6 +17,7 @@ static inline mh_real mh_abs(mh_real a) { return fabsf(a); }
 static inline mh_real mh_sqrt(mh_real a) { return sqrtf(a); }
 static inline mh_real mh_exp(mh_real a) { return expf(a); }
 static inline mh_real mh_log(mh_real a) { return logf(a); }
+static inline mh_real mh_atan2(mh_real y, mh_real x) { return atan2f(y, x); }
 static inline mh_real mh_min(mh_real a, mh_real b) { return a < b ? a : b; }
 static inline mh_real mh_max(mh_real a, mh_real b) { return a > b ? a : b; }
 static inline mh_real mh_clamp(mh_real a, mh_real low, mh_real high) { return mh_min(mh_max(a, low), high); }

@@ -1,11 +1,11 @@
 #include "motehound/followed.h"
 
-static bool finite(struct mh_vec2 v) { return mh_finite(v.x) && mh_finite(v.y); }
+static bool is_finite(struct mh_vec2 v) { return mh_finite(v.x) && mh_finite(v.y); }
 
 enum mh_status mh_followed_report(struct mh_followed *followed, mh_tick time, struct mh_vec2 position,
                                   struct mh_vec2 velocity)
 {
-    if (!finite(position) || !finite(velocity)) {
+    if (!is_finite(position) || !is_finite(velocity)) {
         return MH_ERR_NOT_FINITE;
     }
     if (followed->known && mh_tick_before(time, followed->time)) {
@@ -26,7 +26,7 @@ enum mh_status mh_followed_predict(const struct mh_followed *followed, mh_tick t
     const mh_real seconds = mh_seconds_between(followed->time, time);
     const struct mh_vec2 there = {followed->position.x + followed->velocity.x * seconds,
                                   followed->position.y + followed->velocity.y * seconds};
-    if (!finite(there)) {
+    if (!is_finite(there)) {
         return MH_ERR_NOT_FINITE;
     }
     *position = there;

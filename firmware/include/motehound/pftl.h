@@ -1,0 +1,69 @@
+/* The tracker `pftl`: the particle filter of Zhou, Wang, Wang and Zhou, "Energy-efficient cluster-based target tracking", Journal of Software 24(9), 2013.
+ *
+ * Measurements are ranges in m, horizontal distances with Gaussian noise; they may be negative near a node. Nothing of an instant's particles is
+ * kept: what is stored of the track is the last reported position and the velocity from the report before (the paper's buffer of two fixes),
+ * which whoever follows the track knows too (followed.h). With T the interval, v and P the stored velocity and the position expected now:
+ *
+ * Region. The target's class gives its least and largest speed, mean -+ three standard deviations. Particles are uniform in the sector of a ring
+ * about P - v T, from the one to the other speed times T, within 60 degrees of v: Eq. (13). It is wider by one standard deviation of the stored
+ * position, sd sqrt(2 / n) for n ranges. After a first report it is a disc about P.
+ * Widening. If no particle fits the ranges (sum of squared residuals above sd^2 (n + sqrt(2 n)), and what the density of the particles makes of
+ * it), the region is drawn anew, wider by max(tolerance, half the largest speed x T) in both radii and by the first angle, up to four times; at
+ * last it is the disc of the sensing range about the centroid of the nodes, which holds the target for sure.
+ * Weights. Likelihood of the ranges. At an effective number of at most N / 2, partial rejection control with the region as
+ * proposal, or systematic resampling. The position is the weighted mean.
+ * Storing. If the position is farther than the tolerance from P, or P has no velocity yet, it is reported and stored, the velocity is that from the
+ * report before, at most the largest speed; otherwise P is stored.
+ *
+ * The first step with a measurement takes the centroid of the nodes. Without a measurement the track coasts along P, as long as it is stepped.
+ * restart(): the next step with a measurement uses the last region at once and begins the buffer anew.
+ * Ranges that nothing within the sensing range can give (6 standard deviations beyond it, or below 0) are left out.
+ *
+ * What an estimate holds: `position` as localised; `velocity` and `stored_velocity` the stored one, after this step; `stored` what those who follow have at
+ * `time`; `covariance` that of the particles, of the first position that of a centroid, all zero when coasting; `raw` equals
+ * position; `age` 0; `measurements` the ranges used; `flags` STARTED, COASTED, REFRESHED. `origin` is the first node's place, its z 0; mh_real
+ * resolves 1 mm 10 km from it. step() gives MH_NONE until the first measurement. interest() does not exist. save() writes 20 bytes, 12 after a first report.
+ *
+ * Cost: on average some four draws a particle, each of n roots and 7 n operations; 12 bytes a particle. See docs/costs.md. */
+#ifndef MOTEHOUND_PFTL_H
+#define MOTEHOUND_PFTL_H
+
+#include "motehound/followed.h"
+#include "motehound/particles.h"
+#include "motehound/tracker.h"
+
+struct mh_pftl_config {
+    mh_real speed_mps;       /* mean speed of the target's class, 1e-3 to 1e3; nominal 4.4704 (10 mph) */
+    mh_real speed_sd_mps;    /* its standard deviation, 0 to 1e3; nominal a fifth of that */
+    mh_real sensing_range_m; /* how far a node measures, 1e-2 to 1e4; nominal 50 */
+    mh_real range_sd_m;      /* standard deviation of a range, 1e-3 to 1e3; nominal 5 */
+    mh_real tolerance_m;     /* 0 (every position is reported) to 1e4; nominal 5 */
+    uint16_t particles;      /* N, 1 to MH_PARTICLES_MAX; nominal 50 */
+    uint32_t seed;           /* of the random numbers; nominal 1 */
+
+    /* Widen as the paper says: until the effective number exceeds N / 2, whether or not a particle fits. Nominal false: the sharp
+     * likelihood of exact ranges never gives that, and a region that misses the target does. */
+    bool literal;
+    bool systematic; /* resample instead of rejection control; nominal false */
+};
+
+/* The state, in the header so that it can be allocated statically; its members are the tracker's own, but `draws` may be read. */
+struct mh_pftl {
+    struct mh_pftl_config config;
+    mh_real interval_s;
+    struct mh_random random;
+    uint32_t draws; /* particles drawn since init: what the work goes with */
+    mh_tick time;   /* of the last step */
+    bool stepped;   /* `time` is set */
+    bool restarted; /* the next position begins the buffer anew */
+    bool moving;    /* the buffer has two fixes: the stored velocity is one */
+    struct mh_place origin;
+    struct mh_followed buffer;
+    struct mh_particles particles;
+};
+
+extern const struct mh_tracker mh_tracker_pftl;
+
+void mh_pftl_config_default(struct mh_pftl_config *config);
+
+#endif

@@ -1,0 +1,137 @@
+#include "motehound/centroid.h"
+
+#include "motehound/bytes.h"
+
+#define BYTES 12
+
+void mh_centroid_config_default(struct mh_centroid_config *config) { config->sensing_range_m = 50.0f; }
+
+static enum mh_status init(void *state, const void *config, mh_tick interval)
+{
+    struct mh_centroid_state *centroid = state;
+    const struct mh_centroid_config *given = config;
+    if (centroid == NULL || given == NULL || interval < 1 || interval > 3600000u ||
+        !mh_within(given->sensing_range_m, 1e-2f, 1e4f)) {
+        return MH_ERR_ARGUMENT;
+    }
+    const struct mh_centroid_state begun = {.config = *given};
+    *centroid = begun;
+    return MH_OK;
+}
+
+static struct mh_estimate answer_at(const struct mh_centroid_state *centroid, mh_tick time)
+{
+    const struct mh_estimate answer = {.origin = centroid->origin,
+                                       .time = time,
+                                       .position = centroid->position,
+                                       .raw = centroid->position,
+                                       .stored = centroid->position,
+                                       .flags = MH_ESTIMATE_COASTED};
+    return answer;
+}
+
+static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
+                           struct mh_estimate *estimate)
+{
+    struct mh_centroid_state *centroid = state;
+    if (centroid == NULL || estimate == NULL || (measurements == NULL && count > 0)) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (centroid->stepped && !mh_tick_before(centroid->time, time)) {
+        return MH_ERR_TIME;
+    }
+    centroid->stepped = true;
+    centroid->time = time;
+    const bool begins = !centroid->tracking;
+    if (count == 0) {
+        if (begins) {
+            return MH_NONE;
+        }
+        *estimate = answer_at(centroid, time);
+    } else {
+        if (begins) {
+            centroid->origin = measurements[0].place;
+            centroid->origin.z_mm = 0;
+            centroid->tracking = true;
+        }
+        centroid->position = mh_centroid(measurements, count, &centroid->origin);
+        *estimate = answer_at(centroid, time);
+        estimate->measurements = (uint16_t)(count < UINT16_MAX ? count : UINT16_MAX);
+        estimate->covariance.xx = estimate->covariance.yy =
+            mh_squared(centroid->config.sensing_range_m) / (4.0f * (mh_real)count);
+        estimate->flags = begins ? MH_ESTIMATE_STARTED : 0;
+    }
+    estimate->flags |= MH_ESTIMATE_REFRESHED;
+    return MH_OK;
+}
+
+static enum mh_status predict(const void *state, mh_tick time, struct mh_estimate *estimate)
+{
+    const struct mh_centroid_state *centroid = state;
+    if (centroid == NULL || estimate == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!centroid->tracking) {
+        return MH_NONE;
+    }
+    if (mh_tick_before(time, centroid->time)) {
+        return MH_ERR_TIME;
+    }
+    *estimate = answer_at(centroid, time);
+    return MH_OK;
+}
+
+static enum mh_status save(const void *state, uint8_t *bytes, size_t *length)
+{
+    const struct mh_centroid_state *centroid = state;
+    if (centroid == NULL || bytes == NULL || length == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!centroid->tracking) {
+        return MH_NONE;
+    }
+    const struct mh_place place = mh_place_from_offset(&centroid->origin, centroid->position);
+    uint8_t *at = bytes;
+    mh_put_u32(&at, centroid->time);
+    mh_put_u32(&at, (uint32_t)place.x_mm);
+    mh_put_u32(&at, (uint32_t)place.y_mm);
+    *length = BYTES;
+    return MH_OK;
+}
+
+static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
+{
+    struct mh_centroid_state *centroid = state;
+    if (centroid == NULL || bytes == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (length != BYTES) {
+        return MH_ERR_CORRUPT;
+    }
+    const uint8_t *at = bytes;
+    const mh_tick time = mh_get_u32(&at);
+    struct mh_place place = {.z_mm = 0};
+    place.x_mm = mh_get_i32(&at);
+    place.y_mm = mh_get_i32(&at);
+    if (!mh_coordinate_valid(place.x_mm) || !mh_coordinate_valid(place.y_mm)) {
+        return MH_ERR_CORRUPT;
+    }
+    const struct mh_centroid_state loaded = {
+        .config = centroid->config, .origin = place, .time = time, .stepped = true, .tracking = true};
+    *centroid = loaded;
+    return MH_OK;
+}
+
+static void restart(void *state) { (void)state; }
+
+const struct mh_tracker mh_tracker_centroid = {
+    .name = "centroid",
+    .state_size = sizeof(struct mh_centroid_state),
+    .config_size = sizeof(struct mh_centroid_config),
+    .init = init,
+    .step = step,
+    .predict = predict,
+    .save = save,
+    .load = load,
+    .restart = restart,
+};
