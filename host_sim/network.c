@@ -195,7 +195,7 @@ static void act(struct network *network, const struct host_action *action)
         break;
     case HOST_REPORT:
         account_step(&network->account, action->mote, action->time, action->as.estimate.measurements);
-        config->report(config->context, seconds(network, (int64_t)action->time),
+        config->report(config->context, action->mote, seconds(network, (int64_t)action->time),
                        seconds(network, time_of(action->as.estimate.time, action->time)), &action->as.estimate);
         break;
     case HOST_SLEEP:
@@ -474,6 +474,7 @@ int network_count(struct network *network, struct simulation_counters *counters,
     counters->motes = totals.motes;
     counters->head = totals.heads;
     counters->protocol = totals.protocols;
+    counters->clusters.total = totals.protocols.clusters;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);
     const struct radio_counters *radio = &network->radio.counters;
     counters->frames_repeated = radio->frames_repeated;

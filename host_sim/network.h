@@ -31,8 +31,8 @@ struct network_config {
     int (*instant)(void *context);
     /* Mote `mote` lets its sensor sample, now: a lookahead after it said so. Whatever comes of it, it is charged. May be NULL. */
     void (*sense)(void *context, uint32_t mote);
-    /* The head's estimate for the instant `time_s`. */
-    void (*report)(void *context, double now_s, double time_s, const struct mh_estimate *estimate);
+    /* An estimate of mote `mote` for the instant `time_s`. */
+    void (*report)(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate);
 };
 
 struct network {

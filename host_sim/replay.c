@@ -83,13 +83,14 @@ static int longest_pause(const struct recording *recording, mh_tick interval, mh
     return 0;
 }
 
-static void report(void *context, double now_s, double time_s, const struct mh_estimate *estimate)
+static void report(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate)
 {
     const struct replay *replay = context;
     if (replay->observer->estimate) {
         const struct truth at_time = truth_at(replay->recording, time_s);
         const struct truth at_arrival = truth_at(replay->recording, time_s - (double)estimate->age);
-        replay->observer->estimate(replay->observer->context, now_s, estimate, &at_time, &at_arrival);
+        replay->observer->estimate(replay->observer->context, now_s, roster_id(&replay->roster, mote), estimate,
+                                   &at_time, &at_arrival);
     }
 }
 

@@ -40,12 +40,13 @@ static struct truth truth_at(const struct run *run, double time_s)
     return truth;
 }
 
-static void report(void *context, double now_s, double time_s, const struct mh_estimate *estimate)
+static void report(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate)
 {
     const struct run *run = context;
     if (run->observer->estimate) {
         const struct truth at_time = truth_at(run, time_s), at_arrival = truth_at(run, time_s - (double)estimate->age);
-        run->observer->estimate(run->observer->context, now_s, estimate, &at_time, &at_arrival);
+        run->observer->estimate(run->observer->context, now_s, roster_id(&run->roster, mote), estimate, &at_time,
+                                &at_arrival);
     }
 }
 

@@ -31,15 +31,27 @@ struct observer {
     void (*node)(void *context, mh_node_id id, const struct mh_place *place);
     /* At every sampling instant. */
     void (*truth)(void *context, const struct truth *truth);
-    /* The head has a position, told at time_s. `at_time`: truth at the sampling instant estimate->time, whose time in
+    /* Mote `head` has a position, told at time_s. `at_time`: truth at the sampling instant estimate->time, whose time in
      * seconds is at_time->time_s. `at_arrival`: truth at that instant less the estimate's age. Neither is NULL. */
-    void (*estimate)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                     const struct truth *at_arrival);
+    void (*estimate)(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                     const struct truth *at_time, const struct truth *at_arrival);
+    /* With clusters, at every sampling instant once the sink knows of the track: where it has the target at estimate->time, after what was
+     * reported for that instant; only time, position, velocity and target count. */
+    void (*sink)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time);
+    /* Who follows a track from now on: its head and those that it asks. `is_new`: it counts as a cluster formed. */
+    void (*cluster)(void *context, double time_s, uint8_t track, mh_node_id head, const mh_node_id *members,
+                    size_t count, bool is_new);
     /* A frame goes on the air. */
     void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
                   size_t length);
     /* Every mote, by id and the sink last, each metrics.mote_interval_s. */
     void (*mote)(void *context, double time_s, mh_node_id id, const struct mote_state *state);
+};
+
+/* What became of the clusters of a run. */
+struct cluster_counters {
+    bool present; /* there are clusters; else all is 0 */
+    struct mh_cluster_counters total;
 };
 
 /* Totals of a run, beside what the observer was told. */
@@ -53,7 +65,8 @@ struct simulation_counters {
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;
     struct mh_protocol_counters protocol; /* summed over all motes */
-    struct energy_totals energy;          /* all NaN where energy is not accounted for */
+    struct cluster_counters clusters;
+    struct energy_totals energy; /* all NaN where energy is not accounted for */
     /* of the motes' network time, once it has settled; NaN where clocks are ideal */
     double clock_error_median_ms, clock_error_p99_ms, clock_known_share;
 };

@@ -19,6 +19,16 @@ static double delivery_share(const struct simulation_counters *counters)
     return reports > 0 ? ((double)counters->head.measurements + counters->head.late) / reports : (double)NAN;
 }
 
+static double per_sample(const struct simulation_counters *counters, double value)
+{
+    return counters->samples > 0 ? value / (double)counters->samples : (double)NAN;
+}
+
+static double of_clusters(const struct simulation_counters *counters, uint32_t value)
+{
+    return counters->clusters.present ? value : (double)NAN;
+}
+
 static double energy_mj(const struct simulation_counters *counters, int state, int cause)
 {
     double sum = 0;

@@ -56,6 +56,11 @@
     X(MEASUREMENTS_LATE, "measurements_late", c->head.late, "reports that reached the head too late")                                              \
     X(MEASUREMENTS_OVERFLOWED, "measurements_overflowed", c->head.overflowed, "reports that gave way to stronger ones for want of room")           \
     X(DELIVERY_SHARE, "delivery_share", delivery_share(c), "share of the reports that reached the head, in time or late")                          \
+    X(CLUSTERS, "clusters", of_clusters(c, c->clusters.total.formed), "clusters formed after the first")                                           \
+    X(RECOVERIES, "recoveries", of_clusters(c, c->clusters.total.recoveries), "of these formed because the target was lost")                       \
+    X(REPORTS_PER_SAMPLE, "reports_per_sample", per_sample(c, of_clusters(c, c->clusters.total.reports)), "positions sent to the sink, by sampling instant") \
+    X(ASKED_PER_SAMPLE, "asked_per_sample", per_sample(c, of_clusters(c, c->clusters.total.asked)), "nodes that a head asked to sample, by sampling instant") \
+    X(ANSWERED_PER_SAMPLE, "answered_per_sample", per_sample(c, of_clusters(c, c->clusters.total.answered)), "of these such that measured the target") \
     X(CLOCK_ERROR_MEDIAN_MS, "clock_error_median_ms", c->clock_error_median_ms, "median of the error of the motes' network time, over motes and time")\
     X(CLOCK_ERROR_P99_MS, "clock_error_p99_ms", c->clock_error_p99_ms, "99th percentile of the error of the motes' network time")                  \
     X(CLOCK_KNOWN_SHARE, "clock_known_share", c->clock_known_share, "share of the motes and times at which the network time was known")            \
@@ -70,6 +75,15 @@
     X(ENERGY_MJ_ROUTING, "energy_mj_routing", energy_mj(c, ANY, ENERGY_ROUTING), "of this for finding ways and neighbours")                        \
     X(ENERGY_MJ_TIME, "energy_mj_time", energy_mj(c, ANY, ENERGY_TIME), "of this for keeping clocks together")                                     \
     X(ENERGY_MJ_IDLE, "energy_mj_idle", energy_mj(c, ANY, ENERGY_IDLE), "of this for nothing: waiting and sleeping")                               \
+    X(ENERGY_MJ_HOTTEST, "energy_mj_hottest", 1e3 * c->energy.hottest_j, "energy used by the mote that used most")                                  \
+    X(ENERGY_MJ_PER_SAMPLE, "energy_mj_per_sample", per_sample(c, energy_mj(c, ANY, ANY)), "energy used by all motes but the one on mains, by sampling instant") \
+    X(ENERGY_MJ_PER_SAMPLE_LOCALISATION, "energy_mj_per_sample_localisation", per_sample(c, energy_mj(c, ANY, ENERGY_LOCALISATION)), "of this for sampling and computing") \
+    X(ENERGY_MJ_PER_SAMPLE_MEASURING, "energy_mj_per_sample_measuring", per_sample(c, energy_mj(c, ANY, ENERGY_MEASURING)), "of this for asking and answering") \
+    X(ENERGY_MJ_PER_SAMPLE_CLUSTERING, "energy_mj_per_sample_clustering", per_sample(c, energy_mj(c, ANY, ENERGY_CLUSTERING)), "of this for clusters") \
+    X(ENERGY_MJ_PER_SAMPLE_REPORTING, "energy_mj_per_sample_reporting", per_sample(c, energy_mj(c, ANY, ENERGY_REPORTING)), "of this for carrying reports") \
+    X(ENERGY_MJ_PER_SAMPLE_ROUTING, "energy_mj_per_sample_routing", per_sample(c, energy_mj(c, ANY, ENERGY_ROUTING)), "of this for finding ways and neighbours") \
+    X(ENERGY_MJ_PER_SAMPLE_TIME, "energy_mj_per_sample_time", per_sample(c, energy_mj(c, ANY, ENERGY_TIME)), "of this for keeping clocks together") \
+    X(ENERGY_MJ_PER_SAMPLE_IDLE, "energy_mj_per_sample_idle", per_sample(c, energy_mj(c, ANY, ENERGY_IDLE)), "of this for waiting and sleeping")      \
     X(ENERGY_MJ_STATE_SENSING, "energy_mj_state_sensing", energy_mj(c, ENERGY_SENSING, ANY), "energy of the sensors")                              \
     X(ENERGY_MJ_STATE_CPU, "energy_mj_state_cpu", energy_mj(c, ENERGY_CPU, ANY), "energy of the processors, idle ones included")                   \
     X(ENERGY_MJ_STATE_TRANSMIT, "energy_mj_state_transmit", energy_mj(c, ENERGY_TRANSMIT, ANY), "energy of the radios while transmitting")         \

@@ -3,6 +3,7 @@
 #include "scenario/text.h"
 #include "totals.h"
 
+#include "motehound_cluster_t.h"
 #include "motehound_frame_t.h"
 #include "motehound_mote_t.h"
 #include "motehound_node_t.h"
@@ -69,7 +70,7 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
 }
 
 /* The longest message: names are short and all other fields fixed. */
-enum { ENCODED_MAX = 1024 + 64 * TOTAL_COUNT };
+enum { ENCODED_MAX = 1024 + 64 * TOTAL_COUNT, CLUSTER_MEMBERS_MAX = 16 * TOTAL_COUNT };
 
 /* Encode a message of a generated type and publish it at `at_s`. */
 #define PUBLISH(bus, channel, type, message, at_s)                                                                     \
@@ -85,6 +86,7 @@ enum { ENCODED_MAX = 1024 + 64 * TOTAL_COUNT };
 
 void bus_prepare(void)
 {
+    __motehound_cluster_t_get_hash();
     __motehound_frame_t_get_hash();
     __motehound_mote_t_get_hash();
     __motehound_node_t_get_hash();
@@ -158,8 +160,8 @@ static void on_frame(void *context, double time_s, mh_node_id sender, mh_node_id
     PUBLISH(bus, BUS_FRAME, motehound_frame_t, message, message.time_s);
 }
 
-static void on_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                        const struct truth *at_arrival)
+static void on_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                        const struct truth *at_time, const struct truth *at_arrival)
 {
     struct bus *bus = context;
     const double origin_x = estimate->origin.x_mm * 1e-3, origin_y = estimate->origin.y_mm * 1e-3;
@@ -179,6 +181,7 @@ static void on_estimate(void *context, double time_s, const struct mh_estimate *
         .arrival_s = at_arrival->time_s,
         .measurements = estimate->measurements,
         .flags = estimate->flags,
+        .head = (int32_t)head,
         .true_known = at_time->present,
         .true_x_m = at_time->x_m,
         .true_y_m = at_time->y_m,
@@ -187,6 +190,55 @@ static void on_estimate(void *context, double time_s, const struct mh_estimate *
         .arrival_y_m = at_arrival->y_m,
     };
     PUBLISH(bus, BUS_TRACK, motehound_track_t, message, time_s);
+}
+
+static void on_sink(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time)
+{
+    struct bus *bus = context;
+    const double x_m = estimate->origin.x_mm * 1e-3 + (double)estimate->position.x;
+    const double y_m = estimate->origin.y_mm * 1e-3 + (double)estimate->position.y;
+    const motehound_track_t message = {
+        .time_s = at_time->time_s,
+        .run = bus->run,
+        .target = estimate->target,
+        .x_m = x_m,
+        .y_m = y_m,
+        .vx_mps = (double)estimate->velocity.x,
+        .vy_mps = (double)estimate->velocity.y,
+        .raw_x_m = x_m,
+        .raw_y_m = y_m,
+        .arrival_s = at_time->time_s,
+        .head = -1,
+        .true_known = at_time->present,
+        .true_x_m = at_time->x_m,
+        .true_y_m = at_time->y_m,
+        .arrival_known = at_time->present,
+        .arrival_x_m = at_time->x_m,
+        .arrival_y_m = at_time->y_m,
+    };
+    PUBLISH(bus, BUS_SINK, motehound_track_t, message, time_s);
+}
+
+static void on_cluster(void *context, double time_s, uint8_t track, mh_node_id head, const mh_node_id *members,
+                       size_t count, bool is_new)
+{
+    struct bus *bus = context;
+    int32_t ids[CLUSTER_MEMBERS_MAX];
+    if (count > CLUSTER_MEMBERS_MAX) {
+        bus->failed = true;
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        ids[i] = (int32_t)members[i];
+    }
+    const motehound_cluster_t message = {.time_s = time_s,
+                                         .run = bus->run,
+                                         .track = track,
+                                         .head = (int32_t)head,
+                                         .is_new = is_new,
+                                         .count = (int32_t)count,
+                                         .members = ids};
+    PUBLISH(bus, BUS_CLUSTER, motehound_cluster_t, message, time_s);
 }
 
 static void on_mote(void *context, double time_s, mh_node_id id, const struct mote_state *state)
@@ -210,6 +262,8 @@ struct observer bus_observer(struct bus *bus)
         .node = heard || bus->run == 0 ? on_node : NULL,
         .truth = on_truth,
         .estimate = on_estimate,
+        .sink = on_sink,
+        .cluster = heard ? on_cluster : NULL,
         .frame = heard ? on_frame : NULL,
         .mote = heard ? on_mote : NULL,
     };

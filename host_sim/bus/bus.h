@@ -2,7 +2,7 @@
  *
  * Every message goes to the run's own in-memory LCM, to a log if there is one, and to an outside LCM if there is one.
  * Subscribers on the run's own LCM are called before the observing function returns, so a recorder sees everything, in
- * order, whatever the network outside does. Frames, the state of motes, and the nodes of runs after the first are
+ * order, whatever the network outside does. Frames, clusters, the state of motes, and the nodes of runs after the first are
  * published only if there is a log or an outside. */
 #ifndef MOTEHOUND_SIM_BUS_H
 #define MOTEHOUND_SIM_BUS_H
@@ -17,6 +17,8 @@
 #define BUS_TRUTH "MOTEHOUND_TRUTH"
 #define BUS_FRAME "MOTEHOUND_FRAME"
 #define BUS_TRACK "MOTEHOUND_TRACK"
+#define BUS_SINK "MOTEHOUND_SINK"
+#define BUS_CLUSTER "MOTEHOUND_CLUSTER"
 #define BUS_MOTE "MOTEHOUND_MOTE"
 #define BUS_TOTALS "MOTEHOUND_TOTALS"
 #define BUS_RUN_END "MOTEHOUND_RUN_END"

@@ -326,7 +326,8 @@ static int lifetimes(const struct energy *energy, struct energy_totals *totals)
 
 struct energy_totals energy_total_unknown(void)
 {
-    struct energy_totals totals = {.lifetime_s = (double)NAN, .lifetime_half_s = (double)NAN};
+    struct energy_totals totals = {
+        .hottest_j = (double)NAN, .lifetime_s = (double)NAN, .lifetime_half_s = (double)NAN};
     for (int state = 0; state < ENERGY_STATES; state++) {
         for (int cause = 0; cause < ENERGY_CAUSES; cause++) {
             totals.joules[state][cause] = (double)NAN;
@@ -344,11 +345,14 @@ int energy_total(const struct energy *energy, sim_time now, struct energy_totals
             continue;
         }
         energy_of_mote(energy, i, now, joules);
+        double used_j = 0;
         for (int state = 0; state < ENERGY_STATES; state++) {
             for (int cause = 0; cause < ENERGY_CAUSES; cause++) {
                 totals->joules[state][cause] += joules[state][cause];
+                used_j += joules[state][cause];
             }
         }
+        totals->hottest_j = fmax(totals->hottest_j, used_j);
     }
     return lifetimes(energy, totals);
 }

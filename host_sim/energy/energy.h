@@ -118,6 +118,7 @@ double energy_battery_left(const struct energy *energy, uint32_t index, sim_time
 
 struct energy_totals {
     double joules[ENERGY_STATES][ENERGY_CAUSES];
+    double hottest_j; /* what the mote used that used most */
     uint32_t dead;
     double lifetime_s, lifetime_half_s; /* until the first, and half of the motes with batteries died; else NaN */
 };

@@ -120,6 +120,37 @@ static struct coverage coverage_of(const struct recorder *recorder)
     return coverage;
 }
 
+/* Mean error of `tracks` in sensing ranges, from sample number metrics.skip_first on; NaN for none. */
+static double error_in_ranges(const motehound_track_t *tracks, size_t count, const struct recorder *recorder,
+                              const struct scenario *scenario)
+{
+    const double from_s =
+        recorder->first_s + ((double)scenario->metrics.skip_first - 0.5) * scenario->sensor.interval_s;
+    double sum_m = 0;
+    size_t counted = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (tracks[i].true_known && tracks[i].time_s >= from_s) {
+            sum_m += error_of(&tracks[i]);
+            counted++;
+        }
+    }
+    return counted > 0 ? sum_m / (double)counted / scenario->sensor.range_m : (double)NAN;
+}
+
+/* The longest time between positions within `near_m` of the target, from its first sampling instant to its last. */
+static double longest_gap_s(const struct recorder *recorder, double near_m)
+{
+    double longest_s = 0, good_s = recorder->first_s;
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        const motehound_track_t *track = &recorder->tracks[i];
+        if (track->true_known && error_of(track) <= near_m) {
+            longest_s = fmax(longest_s, track->time_s - good_s);
+            good_s = fmax(good_s, track->time_s);
+        }
+    }
+    return fmax(longest_s, recorder->last_s - good_s);
+}
+
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT])
 {
@@ -141,5 +172,12 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
     values[METRIC_COVERED_SHARE] = stated ? (double)coverage.covered / (double)coverage.positions : (double)NAN;
     values[METRIC_OVERCONFIDENT_SAMPLES] = stated ? (double)coverage.longest : (double)NAN;
     values[METRIC_ESTIMATES] = (double)recorder->track_count;
+    const bool ranged = truth && scenario->sensor.quantity == QUANTITY_RANGE;
+    const double none = (double)NAN;
+    values[METRIC_LOCALISATION_ERROR_RS] =
+        ranged ? error_in_ranges(recorder->tracks, recorder->track_count, recorder, scenario) : none;
+    values[METRIC_SINK_ERROR_RS] =
+        ranged ? error_in_ranges(recorder->sinks, recorder->sink_count, recorder, scenario) : none;
+    values[METRIC_LONGEST_GAP_S] = ranged ? longest_gap_s(recorder, scenario->sensor.range_m) : none;
     memcpy(&values[METRIC_FIRST_TOTAL], recorder->totals, sizeof recorder->totals);
 }

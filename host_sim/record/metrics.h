@@ -31,7 +31,10 @@ struct errors {
     X(TRACK_LOST, "track_lost", "1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates, else 0") \
     X(COVERED_SHARE, "covered_share", "share of the positions whose error was at most three times the standard deviation that they state") \
     X(OVERCONFIDENT_SAMPLES, "overconfident_samples", "longest succession of positions whose error was larger than that")   \
-    X(ESTIMATES, "estimates", "positions that the head reported")
+    X(ESTIMATES, "estimates", "positions that the head reported")                                                           \
+    X(LOCALISATION_ERROR_RS, "localisation_error_rs", "ranged target: mean error of the heads' positions, as a share of sensor.range_m, from sample metrics.skip_first on") \
+    X(SINK_ERROR_RS, "sink_error_rs", "clusters: the same of the positions that the sink has")                              \
+    X(LONGEST_GAP_S, "longest_gap_s", "ranged target: longest time without a head's position within sensor.range_m of the target")
 /* clang-format on */
 
 #define METRIC_ENUMERATOR(id, name, meaning) METRIC_##id,

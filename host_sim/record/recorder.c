@@ -38,6 +38,19 @@ static void on_track(const lcm_recv_buf_t *buffer, const char *channel, void *co
     }
 }
 
+static void on_sink(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    if (grow((void **)&recorder->sinks, recorder->sink_count, &recorder->sink_capacity, sizeof *recorder->sinks) &&
+        motehound_track_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->sinks[recorder->sink_count]) >=
+            0) {
+        recorder->sink_count++;
+    } else {
+        recorder->failed = true;
+    }
+}
+
 static void on_node(const lcm_recv_buf_t *buffer, const char *channel, void *context)
 {
     (void)channel;
@@ -59,7 +72,11 @@ static void on_truth(const lcm_recv_buf_t *buffer, const char *channel, void *co
         recorder->failed = true;
         return;
     }
-    recorder->samples += truth.present ? 1 : 0;
+    if (truth.present) {
+        recorder->first_s = recorder->samples > 0 ? recorder->first_s : truth.time_s;
+        recorder->last_s = truth.time_s;
+        recorder->samples++;
+    }
 }
 
 static void on_totals(const lcm_recv_buf_t *buffer, const char *channel, void *context)
@@ -86,6 +103,7 @@ int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
 {
     const bool sound = lcm_subscribe(lcm, BUS_NODE, on_node, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRACK, on_track, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_SINK, on_sink, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRUTH, on_truth, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TOTALS, on_totals, recorder) != NULL;
     return sound ? 0 : -1;
@@ -94,6 +112,7 @@ int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
 void recorder_free(struct recorder *recorder)
 {
     free(recorder->tracks);
+    free(recorder->sinks);
     free(recorder->nodes);
     *recorder = (struct recorder){0};
 }

@@ -12,9 +12,12 @@
 struct recorder {
     motehound_track_t *tracks; /* in the order they came, so by time */
     size_t track_count, track_capacity;
+    motehound_track_t *sinks; /* what the sink had, likewise */
+    size_t sink_count, sink_capacity;
     motehound_node_t *nodes; /* the motes, where the bus tells them */
     size_t node_count, node_capacity;
     size_t samples;             /* sampling instants at which the source was present */
+    double first_s, last_s;     /* of these */
     double totals[TOTAL_COUNT]; /* of the run, all zero until it has ended */
     bool failed;                /* no memory, or a message that is none of ours */
 };

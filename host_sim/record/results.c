@@ -12,6 +12,8 @@
 /* Digits of a number in a file: more than any quantity is known to, and the same on every machine. */
 #define DIGITS 10
 
+#define SAME_INSTANT_S 1e-6
+
 static void put_number(FILE *file, double value)
 {
     if (isnan(value)) {
@@ -48,7 +50,7 @@ int results_open(struct results *results, const char *out, const char *scenario_
     fputc('\n', results->runs);
     fputs(
         "run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,cov_xx_m2,cov_xy_m2,cov_yy_m2,"
-        "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags\n",
+        "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags,head,sink_x_m,sink_y_m\n",
         results->track);
     return 0;
 }
@@ -60,7 +62,8 @@ const char *results_log_path(const struct results *results, unsigned run, char p
     return results->log != NULL ? output_path(&results->output, name, path) : NULL;
 }
 
-static void put_track(FILE *file, unsigned run, const motehound_track_t *track)
+/* `sink`: what the sink had at that instant, or NULL. */
+static void put_track(FILE *file, unsigned run, const motehound_track_t *track, const motehound_track_t *sink)
 {
     const bool covariance = track->cov_xx_m2 > 0;
     const double none = (double)NAN;
@@ -82,7 +85,24 @@ static void put_track(FILE *file, unsigned run, const motehound_track_t *track)
     put_number(file, track->arrival_s);
     put_number(file, track->arrival_known ? track->arrival_x_m : none);
     put_number(file, track->arrival_known ? track->arrival_y_m : none);
-    fprintf(file, ",%ld\n", (long)track->flags);
+    fprintf(file, ",%ld,%lu", (long)track->flags, (unsigned long)(uint32_t)track->head);
+    put_number(file, sink != NULL ? sink->x_m : none);
+    put_number(file, sink != NULL ? sink->y_m : none);
+    fputc('\n', file);
+}
+
+/* Both lists are ordered by time. */
+static void put_tracks(const struct results *results, const struct recorder *recorder)
+{
+    size_t s = 0;
+    for (size_t i = 0; i < recorder->track_count; i++) {
+        const motehound_track_t *track = &recorder->tracks[i];
+        while (s < recorder->sink_count && recorder->sinks[s].time_s < track->time_s - SAME_INSTANT_S) {
+            s++;
+        }
+        const bool known = s < recorder->sink_count && recorder->sinks[s].time_s <= track->time_s + SAME_INSTANT_S;
+        put_track(results->track, results->run_count, track, known ? &recorder->sinks[s] : NULL);
+    }
 }
 
 /* The first run's motes, in the format that network.file and a replay read. */
@@ -139,9 +159,7 @@ int results_add(struct results *results, uint64_t seed, const struct scenario *s
         memory = memory && (isnan(values[i]) || samples_add(&results->metrics[i], values[i]) == 0);
     }
     fputc('\n', results->runs);
-    for (size_t i = 0; i < recorder->track_count; i++) {
-        put_track(results->track, results->run_count, &recorder->tracks[i]);
-    }
+    put_tracks(results, recorder);
     if (!memory) {
         return fail(error, error_size, "run %u: no memory", results->run_count);
     }

@@ -3,8 +3,8 @@
  *
  * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the
  * "mean", "std" (divisor n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics
- * over all estimates of all runs together. track.csv: one row an estimate; sd_m is the standard deviation of one
- * coordinate, sqrt((cov_xx + cov_yy) / 2). Fields that do not apply are empty. nodes.csv: where the motes of the first
+ * over all estimates of all runs together. track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
+ * coordinate, sqrt((cov_xx + cov_yy) / 2); sink_x_m, sink_y_m are what the sink of clusters had at that instant. Fields that do not apply are empty. nodes.csv: where the motes of the first
  * run stand. scenario.json: the scenario as it was simulated; none for a recording. */
 #ifndef MOTEHOUND_SIM_RESULTS_H
 #define MOTEHOUND_SIM_RESULTS_H

@@ -6,6 +6,8 @@
 #ifndef MOTEHOUND_SIM_SCENARIO_H
 #define MOTEHOUND_SIM_SCENARIO_H
 
+#include "motehound/election.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -31,6 +33,8 @@ enum routing_kind { ROUTING_TREE, ROUTING_GEOGRAPHIC, ROUTING_GREEDY };
 
 /* What sensors measure and trackers work on. */
 enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
+
+enum resampling_kind { RESAMPLING_PRC, RESAMPLING_SYSTEMATIC };
 
 enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE };
 
@@ -66,11 +70,17 @@ struct scenario {
         double
             density; /* mean number of nodes within sensor.range_m of a place, which then gives the field; 0: field.* does */
         double sink_x_m, sink_y_m;
-        char *protocol; /* `collection` */
+        char *protocol; /* collection, direct, cluster or chatter */
+        bool ideal;     /* clusters without frames: nothing is lost, collides or takes time */
     } network;
     struct {
         enum routing_kind routing;
         double hello_s; /* between a node's hellos to its neighbours */
+        enum mh_election election;
+        int64_t members;       /* of a cluster beside its head; 0: the election rule's own number */
+        int64_t horizon;       /* predicted samples that an election looks at */
+        int64_t least_answers; /* fewer than so many nodes that measure the target bring about an election */
+        double watch_s;        /* a node that has heard of no track for a while looks for a target itself this often */
     } protocol;
     struct {
         int64_t sources; /* nodes that report once in sensor.interval_s where source.path is none */
@@ -140,14 +150,21 @@ struct scenario {
         double sync_period_s;
     } clock;
     struct {
-        char *name; /* diffusion, luo or range */
+        char *name; /* diffusion, luo, range, pftl, msl or centroid */
         double diffusion_m2ps;
         double chi;
         double release_gps;                                /* diffusion: expected release rate */
         double additive_sd, relative_sd;                   /* diffusion: assumed noise */
         double forgetting;                                 /* luo */
         bool nonlinear;                                    /* luo */
-        double range_sd_m, acceleration_sd_mps2, height_m; /* range */
+        double range_sd_m; /* of a range; 0: the sensor's in a simulation, 0.3 of a recording */
+        double acceleration_sd_mps2; /* range; 0: that of the target's walk, 1 where there is none */
+        double height_m;             /* range */
+        double speed_mps, speed_sd_mps; /* of the target, as the tracker knows it; 0: as it is */
+        double tolerance_m;             /* the sink may be this much off before it is told */
+        int64_t particles;              /* pftl, msl */
+        enum resampling_kind resampling; /* pftl */
+        bool literal;                    /* pftl: the region widens as published */
         double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */
     } tracker;
     struct {

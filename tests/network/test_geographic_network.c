@@ -24,11 +24,11 @@ static struct {
 
 static double square(double a) { return a * a; }
 
-static void hear_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                          const struct truth *at_arrival)
+static void hear_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                          const struct truth *at_time, const struct truth *at_arrival)
 {
     (void)context;
-    (void)time_s;
+    (void)time_s, (void)head;
     (void)at_time;
     if (errors.count++ >= SKIPPED) {
         errors.square += square(estimate->origin.x_mm * 1e-3 + (double)estimate->position.x - at_arrival->x_m) +

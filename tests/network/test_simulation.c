@@ -76,10 +76,10 @@ static double to(const struct mh_estimate *estimate, struct mh_vec2 offset, cons
            square(estimate->origin.y_mm * 1e-3 + (double)offset.y - truth->y_m);
 }
 
-static void hear_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                          const struct truth *at_arrival)
+static void hear_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                          const struct truth *at_time, const struct truth *at_arrival)
 {
-    (void)context;
+    (void)context, (void)head;
     at(time_s);
     mix(&estimate->position, sizeof estimate->position);
     mix(&estimate->covariance, sizeof estimate->covariance);

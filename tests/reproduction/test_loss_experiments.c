@@ -56,10 +56,10 @@ static struct gap {
     unsigned far;   /* positions more than 5 m away, from ten samples after the gap on */
 } gap;
 
-static void hear_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                          const struct truth *at_arrival)
+static void hear_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                          const struct truth *at_time, const struct truth *at_arrival)
 {
-    (void)context, (void)time_s, (void)at_arrival;
+    (void)context, (void)time_s, (void)head, (void)at_arrival;
     if (at_time->time_s < GAP_END_S || !at_time->present) {
         return;
     }

@@ -41,10 +41,10 @@ static void hear_frame(void *context, double time_s, mh_node_id sender, mh_node_
     check.without_increment += !has_increment;
 }
 
-static void hear_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                          const struct truth *at_arrival)
+static void hear_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                          const struct truth *at_time, const struct truth *at_arrival)
 {
-    (void)context, (void)time_s, (void)at_time, (void)at_arrival;
+    (void)context, (void)time_s, (void)head, (void)at_time, (void)at_arrival;
     const struct mh_sym2 *covariance = &estimate->covariance;
     TEST_ASSERT_TRUE(mh_finite(estimate->position.x) && mh_finite(estimate->position.y));
     TEST_ASSERT_TRUE(mh_finite(estimate->raw.x) && mh_finite(estimate->raw.y));

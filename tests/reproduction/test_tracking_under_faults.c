@@ -77,10 +77,10 @@ static void see_frame(void *context, double time_s, mh_node_id sender, mh_node_i
     }
 }
 
-static void see_estimate(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time,
-                         const struct truth *at_arrival)
+static void see_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                         const struct truth *at_time, const struct truth *at_arrival)
 {
-    (void)context, (void)time_s, (void)at_arrival;
+    (void)context, (void)time_s, (void)head, (void)at_arrival;
     const struct mh_sym2 *p = &estimate->covariance;
     TEST_ASSERT_TRUE(mh_finite(estimate->position.x) && mh_finite(estimate->position.y));
     TEST_ASSERT_TRUE(mh_finite(estimate->velocity.x) && mh_finite(estimate->velocity.y));

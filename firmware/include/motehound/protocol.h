@@ -31,10 +31,20 @@ enum mh_loss {
     MH_LOSSES
 };
 
+/* What one node or many did in clusters. */
+struct mh_cluster_counters {
+    uint32_t formed;     /* clusters, the first of a track left out */
+    uint32_t recoveries; /* of these because the target was lost */
+    uint32_t reports;    /* of the target's position, sent to the sink */
+    uint32_t asked;      /* nodes asked to sample, each counted at each instant */
+    uint32_t answered;   /* of these such that measured the target */
+};
+
 /* What happened to the messages of one node or of many. */
 struct mh_protocol_counters {
     uint32_t lost[MH_LOSSES];
     uint32_t retries; /* messages sent once more, beside what the radio does on its own */
+    struct mh_cluster_counters clusters;
 };
 
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */

@@ -67,7 +67,7 @@ static void tell(const struct observer *observer, double time_s, bool present, f
                                          .age = 0.5f,
                                          .target = target};
     observer->truth(observer->context, &truth);
-    observer->estimate(observer->context, time_s, &estimate, &truth, &arrival);
+    observer->estimate(observer->context, time_s, 0, &estimate, &truth, &arrival);
 }
 
 static void run_of(int instants, void (*run)(const struct observer *observer, int instant))
