@@ -72,9 +72,10 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         protocol_choose(scenario->network.protocol, scenario, &kit->protocol, error, error_size)) {
         return -1;
     }
-    if (kit->tracker.measures != QUANTITY_CONCENTRATION) {
-        snprintf(error, error_size, "tracker.name: `%s` works on ranges, a diffusing source gives concentrations",
-                 scenario->tracker.name);
+    if (scenario->source.path != PATH_NONE && kit->tracker.measures != scenario->sensor.quantity) {
+        const bool ranges = kit->tracker.measures == QUANTITY_RANGE;
+        snprintf(error, error_size, "tracker.name: `%s` works on %s, sensor.quantity is %s", scenario->tracker.name,
+                 ranges ? "ranges" : "concentrations", ranges ? "concentration" : "range");
         return -1;
     }
     if (kit->sensor.interval < 1) {

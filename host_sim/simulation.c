@@ -2,6 +2,7 @@
 
 #include "network.h"
 #include "world/field.h"
+#include "world/ranging.h"
 #include "world/sensor.h"
 #include "world/traffic.h"
 
@@ -14,8 +15,10 @@ enum power { POWER_ON, POWER_OFF, POWER_DEAD };
 struct run {
     const struct observer *observer;
     struct roster roster;
-    struct traffic traffic; /* where there is no source; else the next six */
+    struct traffic traffic; /* where there is no source; else the next eight */
     struct field field;
+    bool ranged; /* the sensors measure how far the source is */
+    struct ranging ranging;
     struct sensors sensors;
     double *concentrations;
     int32_t *counts;
@@ -43,7 +46,13 @@ static struct truth truth_at(const struct run *run, double time_s)
 static void report(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate)
 {
     const struct run *run = context;
-    if (run->observer->estimate) {
+    const bool is_sink = mote == run->roster.deployment.count;
+    if (is_sink && run->roster.kit.protocol.in_turns) {
+        if (run->observer->sink) {
+            const struct truth at_time = truth_at(run, time_s);
+            run->observer->sink(run->observer->context, now_s, estimate, &at_time);
+        }
+    } else if (run->observer->estimate) {
         const struct truth at_time = truth_at(run, time_s), at_arrival = truth_at(run, time_s - (double)estimate->age);
         run->observer->estimate(run->observer->context, now_s, roster_id(&run->roster, mote), estimate, &at_time,
                                 &at_arrival);
@@ -73,14 +82,44 @@ static int switch_nodes(struct run *run)
     return network_schedule(&run->network, run->next_switch);
 }
 
-static int sample(struct run *run)
+static bool can_read(const struct run *run, uint64_t instant, double time_s, size_t node)
 {
-    const uint64_t instant = run->next++;
-    const double time_s = network_time_s(&run->network);
-    if (run->observer->truth) {
-        const struct truth truth = truth_at(run, time_s);
-        run->observer->truth(run->observer->context, &truth);
+    return (!run->power || run->power[node] == POWER_ON) && !sensors_lost(&run->sensors, instant, time_s, node);
+}
+
+/* Node `node` measures how far the source is, now, if it detects it; `instant` is the nearest. */
+static void sample_range(struct run *run, uint64_t instant, double time_s, uint32_t node, struct point source)
+{
+    const struct recorded_node *place = &run->roster.deployment.nodes[node];
+    const double distance_m = hypot(hypot(place->x_m - source.x_m, place->y_m - source.y_m), place->z_m);
+    double range_m;
+    if (can_read(run, instant, time_s, node) && ranging_detects(&run->ranging, instant, node, distance_m, &range_m)) {
+        network_reading(&run->network, node, sensors_convert(&run->sensors, instant, time_s, node, range_m), 0);
     }
+}
+
+static void sample_ranges(struct run *run, uint64_t instant, double time_s)
+{
+    const struct point source = trajectory_position(&run->field.trajectory, time_s);
+    for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
+        sample_range(run, instant, time_s, i, source);
+    }
+}
+
+/* A node whose sensor was asked, at whatever time; while the source is not on its way it senses nothing. */
+static void sense(void *context, uint32_t mote)
+{
+    struct run *run = context;
+    const double time_s = network_time_s(&run->network);
+    const struct truth truth = truth_at(run, time_s);
+    if (truth.present && mote < run->roster.deployment.count) {
+        const uint64_t nearest = (run->network.now + run->interval / 2) / run->interval;
+        sample_range(run, nearest, time_s, mote, (struct point){truth.x_m, truth.y_m});
+    }
+}
+
+static int sample_concentrations(struct run *run, uint64_t instant, double time_s)
+{
     if (field_prepare(&run->field, time_s)) {
         return -1;
     }
@@ -91,9 +130,26 @@ static int sample(struct run *run)
     }
     sensors_read(&run->sensors, instant, run->concentrations, run->counts);
     for (size_t i = 0; i < deployment->count; i++) {
-        if ((!run->power || run->power[i] == POWER_ON) && !sensors_lost(&run->sensors, instant, time_s, i)) {
+        if (can_read(run, instant, time_s, i)) {
             network_reading(&run->network, (uint32_t)i, run->counts[i], 0);
         }
+    }
+    return 0;
+}
+
+static int sample(struct run *run)
+{
+    const uint64_t instant = run->next++;
+    const double time_s = network_time_s(&run->network);
+    if (run->observer->truth) {
+        const struct truth truth = truth_at(run, time_s);
+        run->observer->truth(run->observer->context, &truth);
+    }
+    if (!run->ranged && sample_concentrations(run, instant, time_s)) {
+        return -1;
+    }
+    if (run->ranged && !run->roster.kit.protocol.in_turns) {
+        sample_ranges(run, instant, time_s);
     }
     return run->next < run->instants ? network_schedule(&run->network, run->next * run->interval) : 0;
 }
@@ -150,6 +206,8 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
     run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
     run->end =
         run->instants * run->interval; /* the head waits for the last instant's measurements less than one interval */
+    run->ranged = scenario->sensor.quantity == QUANTITY_RANGE;
+    run->ranging = ranging_of(scenario, seed);
     run->concentrations = malloc(nodes * sizeof *run->concentrations);
     run->counts = malloc(nodes * sizeof *run->counts);
     return run->concentrations && run->counts ? sensors_make(&run->sensors, scenario, seed, nodes) : -1;
@@ -166,6 +224,7 @@ static int bring_up(struct run *run, const struct host_provider *hosts, const st
                                           .seed = seed,
                                           .observer = run->observer,
                                           .context = run,
+                                          .sense = sense,
                                           .instant = has_source ? instant_of_source : instant_of_traffic,
                                           .report = report};
     snprintf(error, error_size, "out of memory");
@@ -199,7 +258,8 @@ int simulation_run_on(const struct host_provider *hosts, const struct scenario *
     int result = bring_up(&run, hosts, scenario, seed, error, error_size);
     if (result == 0) {
         result = network_run(&run.network, run.end, stop, error, error_size);
-        *counters = (struct simulation_counters){.samples = run.next};
+        *counters =
+            (struct simulation_counters){.samples = run.next, .clusters.present = run.roster.kit.protocol.in_turns};
     }
     if (result == 0) {
         result = network_count(&run.network, counters, error, error_size);

@@ -1,6 +1,7 @@
 #include "trackers.h"
 
 #include "radio/radio.h"
+#include "world/mobility.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -35,14 +36,52 @@ static void set_up_diffusion(struct tracker_choice *choice, const struct scenari
     }
 }
 
+/* What a tracker knows of the target: what the scenario tells it, or else how it is. Where it comes from a recording there is no `region`, and
+ * nothing is known. */
+struct known_target {
+    double range_sd_m, acceleration_sd_mps2, height_m, speed_mps, speed_sd_mps;
+};
+
+static struct known_target target_of(const struct scenario *scenario, const struct mh_region *region)
+{
+    const bool walks = region && scenario->source.path == PATH_GAUSS_MARKOV;
+    const struct mobility walk = mobility_of(scenario);
+    const double smallest_sd_m = 0.01; /* of a sensor without noise */
+    struct known_target target = {.range_sd_m = region ? fmax(scenario->sensor.range_noise_m, smallest_sd_m) : 0.3,
+                                  .acceleration_sd_mps2 = 1,
+                                  .height_m = region ? 0 : scenario->tracker.height_m,
+                                  .speed_mps = walks    ? walk.speed_mps
+                                               : region ? scenario->source.speed_mps
+                                                        : 1};
+    if (walks) {
+        /* a step changes each coordinate of the velocity by half the variance of the step's changes along and across the way */
+        const double blur_sq = 1 - walk.memory * walk.memory;
+        const double along = walk.speed_sd_mps, across = walk.heading_sd_rad * walk.speed_mps;
+        target.acceleration_sd_mps2 = sqrt(blur_sq * (along * along + across * across) / 2 / walk.interval_s);
+    }
+    if (scenario->tracker.range_sd_m > 0) {
+        target.range_sd_m = scenario->tracker.range_sd_m;
+    }
+    if (scenario->tracker.acceleration_sd_mps2 > 0) {
+        target.acceleration_sd_mps2 = scenario->tracker.acceleration_sd_mps2;
+    }
+    if (scenario->tracker.speed_mps > 0) {
+        target.speed_mps = scenario->tracker.speed_mps;
+    }
+    target.speed_sd_mps = scenario->tracker.speed_sd_mps > 0 ? scenario->tracker.speed_sd_mps
+                          : walks                            ? scenario->target.speed_sd * target.speed_mps
+                                                             : 0.2 * target.speed_mps;
+    return target;
+}
+
 static void set_up_range(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
-    (void)region;
+    const struct known_target target = target_of(scenario, region);
     struct mh_range_config *config = &choice->config.range;
     mh_range_config_default(config);
-    config->range_sd_m = (mh_real)scenario->tracker.range_sd_m;
-    config->acceleration_sd_mps2 = (mh_real)scenario->tracker.acceleration_sd_mps2;
-    config->height_m = (mh_real)scenario->tracker.height_m;
+    config->range_sd_m = (mh_real)target.range_sd_m;
+    config->acceleration_sd_mps2 = (mh_real)target.acceleration_sd_mps2;
+    config->height_m = (mh_real)target.height_m;
 }
 
 static const struct {

@@ -23,7 +23,9 @@ struct tracker_choice {
 
 struct protocol_choice {
     const struct mh_protocol *protocol;
-    bool in_turns; /* each node with a sensor can be head, and the sink is none; else it is the only one */
+    /* Each node with a sensor can be head, the sink is none, and sensors sample when they are asked; else the sink is the only head, and
+     * sensors sample at every instant. */
+    bool in_turns;
     union {
         struct mh_collection_config collection;
         struct mh_geographic_collection_config geographic;

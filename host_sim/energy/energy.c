@@ -326,8 +326,7 @@ static int lifetimes(const struct energy *energy, struct energy_totals *totals)
 
 struct energy_totals energy_total_unknown(void)
 {
-    struct energy_totals totals = {
-        .hottest_j = (double)NAN, .lifetime_s = (double)NAN, .lifetime_half_s = (double)NAN};
+    struct energy_totals totals = {.hottest_j = (double)NAN, .lifetime_s = (double)NAN, .lifetime_half_s = (double)NAN};
     for (int state = 0; state < ENERGY_STATES; state++) {
         for (int cause = 0; cause < ENERGY_CAUSES; cause++) {
             totals.joules[state][cause] = (double)NAN;

@@ -153,16 +153,16 @@ struct scenario {
         char *name; /* diffusion, luo, range, pftl, msl or centroid */
         double diffusion_m2ps;
         double chi;
-        double release_gps;                                /* diffusion: expected release rate */
-        double additive_sd, relative_sd;                   /* diffusion: assumed noise */
-        double forgetting;                                 /* luo */
-        bool nonlinear;                                    /* luo */
-        double range_sd_m; /* of a range; 0: the sensor's in a simulation, 0.3 of a recording */
-        double acceleration_sd_mps2; /* range; 0: that of the target's walk, 1 where there is none */
-        double height_m;             /* range */
-        double speed_mps, speed_sd_mps; /* of the target, as the tracker knows it; 0: as it is */
-        double tolerance_m;             /* the sink may be this much off before it is told */
-        int64_t particles;              /* pftl, msl */
+        double release_gps;              /* diffusion: expected release rate */
+        double additive_sd, relative_sd; /* diffusion: assumed noise */
+        double forgetting;               /* luo */
+        bool nonlinear;                  /* luo */
+        double range_sd_m;               /* of a range; 0: the sensor's in a simulation, 0.3 of a recording */
+        double acceleration_sd_mps2;     /* range; 0: that of the target's walk, 1 where there is none */
+        double height_m;                 /* range */
+        double speed_mps, speed_sd_mps;  /* of the target, as the tracker knows it; 0: as it is */
+        double tolerance_m;              /* the sink may be this much off before it is told */
+        int64_t particles;               /* pftl, msl */
         enum resampling_kind resampling; /* pftl */
         bool literal;                    /* pftl: the region widens as published */
         double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */

@@ -7,13 +7,18 @@ struct mh_sensor_config sensor_config(const struct scenario *scenario)
 {
     const int64_t bits = scenario->sensor.adc_bits;
     const bool ideal = bits == 0;
+    const bool ranges = scenario->sensor.quantity == QUANTITY_RANGE; /* which noise can make negative */
+    const int32_t counts_max = ideal ? INT32_MAX : (int32_t)((INT64_C(1) << bits) - 1);
     const double quantum = ideal ? 1 : fmax(1, round(ldexp(scenario->sensor.full_scale, 20 - (int)bits)));
     return (struct mh_sensor_config){
         .q20_per_count = (int32_t)fmin(quantum, INT32_MAX),
-        .counts_max = ideal ? INT32_MAX : (int32_t)((INT64_C(1) << bits) - 1),
+        .counts_min = !ranges ? 0
+                      : ideal ? INT32_MIN
+                              : -counts_max,
+        .counts_max = counts_max,
         .interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S),
         .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
-        .report_always = scenario->source.path == PATH_NONE,
+        .report_always = ranges || scenario->source.path == PATH_NONE,
     };
 }
 
@@ -24,6 +29,7 @@ int sensors_make(struct sensors *sensors, const struct scenario *scenario, uint6
                                 .relative_noise = scenario->sensor.relative_noise,
                                 .additive_noise = scenario->sensor.additive_noise,
                                 .counts_per_unit = ldexp(1.0, 20) / config.q20_per_count,
+                                .counts_min = config.counts_min,
                                 .counts_max = config.counts_max,
                                 .loss = scenario->sensor.loss,
                                 .outage_start_s = scenario->sensor.outage_start_s,
@@ -55,42 +61,50 @@ void sensors_free(struct sensors *sensors)
     *sensors = (struct sensors){0};
 }
 
-/* What faults make of the readings before it is converted. */
-static void distort(const struct sensors *sensors, uint64_t instant, double time_s, double *concentrations)
+/* Which faults are on. */
+struct distortion {
+    bool bias, spike, saturate, stuck;
+};
+
+static struct distortion distortion_at(const struct sensors *sensors, double time_s)
 {
     const struct faults *faults = &sensors->faults;
-    if (faults_are_on(faults, FAULT_BIAS, time_s)) {
-        for (size_t i = 0; i < sensors->count; i++) {
-            concentrations[i] += faults_hit(faults, FAULT_BIAS, time_s, (uint32_t)i) ? sensors->bias : 0;
-        }
-    }
-    if (faults_are_on(faults, FAULT_SPIKE, time_s)) {
-        for (size_t i = 0; i < sensors->count; i++) {
-            const double draw = random_uniform(sensors->spike_stream, instant * sensors->count + i);
-            concentrations[i] += draw < sensors->spike_chance && faults_hit(faults, FAULT_SPIKE, time_s, (uint32_t)i)
-                                     ? sensors->spike
-                                     : 0;
-        }
-    }
-    if (faults_are_on(faults, FAULT_SATURATE, time_s)) {
-        for (size_t i = 0; i < sensors->count; i++) {
-            if (faults_hit(faults, FAULT_SATURATE, time_s, (uint32_t)i)) {
-                concentrations[i] = fmin(concentrations[i], sensors->saturate_at);
-            }
-        }
-    }
+    return (struct distortion){.bias = faults_are_on(faults, FAULT_BIAS, time_s),
+                               .spike = faults_are_on(faults, FAULT_SPIKE, time_s),
+                               .saturate = faults_are_on(faults, FAULT_SATURATE, time_s),
+                               .stuck = sensors->last && faults_are_on(faults, FAULT_STUCK, time_s)};
 }
 
-/* Sensors that stick repeat their last reading. */
-static void stick(struct sensors *sensors, double time_s, int32_t *counts)
+/* One value through faults and converter. */
+static int32_t convert(struct sensors *sensors, struct distortion on, uint64_t instant, double time_s, size_t node,
+                       double value)
 {
-    const bool on = faults_are_on(&sensors->faults, FAULT_STUCK, time_s);
-    for (size_t i = 0; i < sensors->count; i++) {
-        if (on && faults_hit(&sensors->faults, FAULT_STUCK, time_s, (uint32_t)i)) {
-            counts[i] = sensors->last[i];
-        }
-        sensors->last[i] = counts[i];
+    const struct faults *faults = &sensors->faults;
+    const uint32_t mote = (uint32_t)node;
+    if (on.bias && faults_hit(faults, FAULT_BIAS, time_s, mote)) {
+        value += sensors->bias;
     }
+    if (on.spike && faults_hit(faults, FAULT_SPIKE, time_s, mote) &&
+        random_uniform(sensors->spike_stream, instant * sensors->count + node) < sensors->spike_chance) {
+        value += sensors->spike;
+    }
+    if (on.saturate && faults_hit(faults, FAULT_SATURATE, time_s, mote)) {
+        value = fmin(value, sensors->saturate_at);
+    }
+    int32_t counts =
+        (int32_t)lround(fmin(fmax(value * sensors->counts_per_unit, sensors->counts_min), sensors->counts_max));
+    if (on.stuck && faults_hit(faults, FAULT_STUCK, time_s, mote)) {
+        counts = sensors->last[node];
+    }
+    if (sensors->last) {
+        sensors->last[node] = counts;
+    }
+    return counts;
+}
+
+int32_t sensors_convert(struct sensors *sensors, uint64_t instant, double time_s, size_t node, double value)
+{
+    return convert(sensors, distortion_at(sensors, time_s), instant, time_s, node, value);
 }
 
 void sensors_read(struct sensors *sensors, uint64_t instant, double *concentrations, int32_t *counts)
@@ -109,12 +123,9 @@ void sensors_read(struct sensors *sensors, uint64_t instant, double *concentrati
         }
     }
     const double time_s = (double)instant * sensors->interval_s;
-    distort(sensors, instant, time_s, concentrations);
+    const struct distortion on = distortion_at(sensors, time_s);
     for (size_t i = 0; i < count; i++) {
-        counts[i] = (int32_t)lround(fmin(fmax(concentrations[i] * sensors->counts_per_unit, 0), sensors->counts_max));
-    }
-    if (sensors->last) {
-        stick(sensors, time_s, counts);
+        counts[i] = convert(sensors, on, instant, time_s, i, concentrations[i]);
     }
 }
 

@@ -149,28 +149,31 @@ static void metrics_have_names_of_their_own(void)
     TEST_ASSERT_EQUAL_STRING(total_names[0], metric_names[METRIC_FIRST_TOTAL]);
 }
 
-/* The name of every state and cause stands in a metric's. */
+/* The name of every state and cause stands in a metric's, that of a cause also in one by sampling instant. */
 static void energy_metrics_cover_states_and_causes(void)
 {
-    struct simulation_counters counters = {0};
+    struct simulation_counters counters = {.samples = 4};
     double totals[TOTAL_COUNT];
     for (int state = 0; state < ENERGY_STATES; state++) {
         for (int cause = 0; cause < ENERGY_CAUSES; cause++) {
-            char of_state[60], of_cause[60];
+            char of_state[60], of_cause[60], by_sample[60];
             snprintf(of_state, sizeof of_state, "energy_mj_state_%s", energy_state_names[state]);
             snprintf(of_cause, sizeof of_cause, "energy_mj_%s", energy_cause_names[cause]);
+            snprintf(by_sample, sizeof by_sample, "energy_mj_per_sample_%s", energy_cause_names[cause]);
             counters.energy.joules[state][cause] = 2;
             totals_of(&counters, totals);
             int found = 0;
             for (int i = 0; i < TOTAL_COUNT; i++) {
                 const bool meant = strcmp(total_names[i], of_state) == 0 || strcmp(total_names[i], of_cause) == 0 ||
                                    strcmp(total_names[i], "energy_mj") == 0;
-                found += meant;
+                const bool shared =
+                    strcmp(total_names[i], by_sample) == 0 || strcmp(total_names[i], "energy_mj_per_sample") == 0;
+                found += meant + shared;
                 if (strncmp(total_names[i], "energy_mj", 9) == 0) {
-                    NEAR(meant ? 2000 : 0, totals[i]);
+                    NEAR(meant ? 2000 : shared ? 500 : 0, totals[i]);
                 }
             }
-            TEST_ASSERT_EQUAL_INT(3, found);
+            TEST_ASSERT_EQUAL_INT(5, found);
             counters.energy.joules[state][cause] = 0;
         }
     }

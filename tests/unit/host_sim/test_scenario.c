@@ -97,7 +97,7 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation
         {"source: {points: []}", "a.yaml:1: source.points: expected at least one entry, found none", ""},
         {"network: {nodes: 3}", "a.yaml:1: network.nodes: expected a whole number 4 to 1000000, found '3'", ""},
         {"network: {nodes: 4.5}", "a.yaml:1: network.nodes: expected a whole number", "'4.5'"},
-        {"tracker: {name: kalman}", "a.yaml:1: tracker.name: expected one of diffusion/luo/range, found 'kalman'", ""},
+        {"tracker: {name: kalman}", "a.yaml:1: tracker.name: expected one of diffusion/luo/range/pftl/msl/centroid, found 'kalman'", ""},
         {"tracker: {nonlinear: yes}", "a.yaml:1: tracker.nonlinear: expected true or false, found 'yes'", ""},
         {"name: a\nname: b", "a.yaml:1: name: expected once, found twice", ""},
         {"name: a\n---\nname: b", "a.yaml:1: expected one document, found more", ""},
