@@ -84,6 +84,40 @@ static void set_up_range(struct tracker_choice *choice, const struct scenario *s
     config->height_m = (mh_real)target.height_m;
 }
 
+static void set_up_pftl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    const struct known_target target = target_of(scenario, region);
+    struct mh_pftl_config *config = &choice->config.pftl;
+    mh_pftl_config_default(config);
+    config->speed_mps = (mh_real)target.speed_mps;
+    config->speed_sd_mps = (mh_real)target.speed_sd_mps;
+    config->sensing_range_m = (mh_real)scenario->sensor.range_m;
+    config->range_sd_m = (mh_real)target.range_sd_m;
+    config->tolerance_m = (mh_real)scenario->tracker.tolerance_m;
+    config->particles = (uint16_t)scenario->tracker.particles;
+    config->literal = scenario->tracker.literal;
+    config->systematic = scenario->tracker.resampling == RESAMPLING_SYSTEMATIC;
+}
+
+static void set_up_msl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    const struct known_target target = target_of(scenario, region);
+    struct mh_msl_config *config = &choice->config.msl;
+    mh_msl_config_default(config);
+    config->speed_mps = (mh_real)target.speed_mps;
+    config->speed_sd_mps = (mh_real)target.speed_sd_mps;
+    config->sensing_range_m = (mh_real)scenario->sensor.range_m;
+    config->particles = (uint16_t)scenario->tracker.particles;
+}
+
+static void set_up_centroid(struct tracker_choice *choice, const struct scenario *scenario,
+                            const struct mh_region *region)
+{
+    (void)region;
+    mh_centroid_config_default(&choice->config.centroid);
+    choice->config.centroid.sensing_range_m = (mh_real)scenario->sensor.range_m;
+}
+
 static const struct {
     const struct mh_tracker *tracker;
     const char *meaning;
@@ -95,6 +129,12 @@ static const struct {
     {&mh_tracker_luo, "moving diffusion source: least squares and Sage-Husa filter (Luo, Chai and Yang)",
      QUANTITY_CONCENTRATION, set_up_luo},
     {&mh_tracker_range, "ranged target: constant velocity, extended Kalman filter", QUANTITY_RANGE, set_up_range},
+    {&mh_tracker_pftl, "ranged target: particles drawn anew about its predicted place (Zhou et al.)", QUANTITY_RANGE,
+     set_up_pftl},
+    {&mh_tracker_msl, "ranged target: particles that all who detect it can have (MSL, range-free)", QUANTITY_RANGE,
+     set_up_msl},
+    {&mh_tracker_centroid, "ranged target: the middle of those who detect it (range-free)", QUANTITY_RANGE,
+     set_up_centroid},
 };
 
 enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
@@ -119,7 +159,8 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
             return 0;
         }
     }
-    snprintf(error, error_size, "tracker.name: `%s`, expected diffusion, luo or range", scenario->tracker.name);
+    snprintf(error, error_size, "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl or centroid",
+             scenario->tracker.name);
     return -1;
 }
 

@@ -2,11 +2,14 @@
 #ifndef MOTEHOUND_SIM_TRACKERS_H
 #define MOTEHOUND_SIM_TRACKERS_H
 
+#include "motehound/centroid.h"
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
 #include "motehound/direct.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
+#include "motehound/msl.h"
+#include "motehound/pftl.h"
 #include "motehound/range.h"
 #include "scenario/scenario.h"
 #include "world/chatter.h"
@@ -18,6 +21,9 @@ struct tracker_choice {
         struct mh_luo_config luo;
         struct mh_diffusion_config diffusion;
         struct mh_range_config range;
+        struct mh_pftl_config pftl;
+        struct mh_msl_config msl;
+        struct mh_centroid_config centroid;
     } config; /* the tracker's own */
 };
 

@@ -109,6 +109,40 @@ static int check_faults(const struct scenario *scenario, const char *name, char 
     return 0;
 }
 
+/* Clusters follow a target that is ranged, and the ideal network has nothing but them. */
+static int check_clusters(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const bool clusters = strcmp(scenario->network.protocol, "cluster") == 0;
+    if (scenario->network.ideal && !clusters) {
+        return fail(error, error_size, "%s: network.ideal: expected true for network.protocol cluster alone, found %s",
+                    name, scenario->network.protocol);
+    }
+    if (clusters && (scenario->sensor.quantity != QUANTITY_RANGE || scenario->source.path == PATH_NONE)) {
+        return fail(error, error_size,
+                    "%s: network.protocol: expected cluster only where sensor.quantity is range and there is a source",
+                    name);
+    }
+    if (!scenario->network.ideal) {
+        return 0;
+    }
+    struct faults faults;
+    faults_make(&faults, scenario, 0);
+    for (int i = 0; i < FAULTS; i++) {
+        if (faults_include(&faults, (enum fault)i)) {
+            return fail(error, error_size, "%s: network.ideal: expected false where there are faults.*", name);
+        }
+    }
+    if (scenario->sensor.loss > 0 || scenario->sensor.outage_s > 0) {
+        return fail(error, error_size,
+                    "%s: network.ideal: expected false where sensor.loss or sensor.outage_s is not 0", name);
+    }
+    if (scenario->energy.battery_j > 0) {
+        return fail(error, error_size, "%s: network.ideal: expected false where energy.battery_j is not 0, found %g J",
+                    name, scenario->energy.battery_j);
+    }
+    return 0;
+}
+
 int scenario_check(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
     const unsigned points = scenario->source.points_count;
@@ -173,7 +207,8 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         return fail(error, error_size, "%s: energy.battery_j: expected 0 for energy.profile none, found %g", name,
                     scenario->energy.battery_j);
     }
-    if (check_faults(scenario, name, error, error_size) != 0) {
+    if (check_faults(scenario, name, error, error_size) != 0 ||
+        check_clusters(scenario, name, error, error_size) != 0) {
         return -1;
     }
     if (scenario->sweep.key[0] != '\0' &&

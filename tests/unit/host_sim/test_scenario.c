@@ -97,7 +97,8 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation
         {"source: {points: []}", "a.yaml:1: source.points: expected at least one entry, found none", ""},
         {"network: {nodes: 3}", "a.yaml:1: network.nodes: expected a whole number 4 to 1000000, found '3'", ""},
         {"network: {nodes: 4.5}", "a.yaml:1: network.nodes: expected a whole number", "'4.5'"},
-        {"tracker: {name: kalman}", "a.yaml:1: tracker.name: expected one of diffusion/luo/range/pftl/msl/centroid, found 'kalman'", ""},
+        {"tracker: {name: kalman}",
+         "a.yaml:1: tracker.name: expected one of diffusion/luo/range/pftl/msl/centroid, found 'kalman'", ""},
         {"tracker: {nonlinear: yes}", "a.yaml:1: tracker.nonlinear: expected true or false, found 'yes'", ""},
         {"name: a\nname: b", "a.yaml:1: name: expected once, found twice", ""},
         {"name: a\n---\nname: b", "a.yaml:1: expected one document, found more", ""},
@@ -149,6 +150,11 @@ static void keys_that_contradict_each_other_are_refused(void)
         {"faults.every_s", "0.5", "sensor.interval_s", "1"},
         {"tracker.window_s", "1", "sensor.interval_s", "1"},
         {"tracker.chi", "0", "tracker.name", "diffusion"},
+        {"source.path", "gauss_markov", "source.duration_s", "0.5"},
+        {"network.ideal", "true", "network.protocol", "collection"},
+        {"network.protocol", "cluster", "sensor.quantity", "concentration"},
+        {"network.density", "12", "network.layout", "file"},
+        {"network.density", "1e-4", "network.nodes", "100000"},
         {"sweep.key", "network.node", "sweep.values", "1"},
         {"sweep.key", "network.nodes", "sweep.values", ""},
     };
@@ -174,6 +180,30 @@ static void keys_that_contradict_each_other_are_refused(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&scenario, "a.yaml", error, sizeof error), error);
 }
 
+/* What the ideal network or the walk of the published experiments cannot do. */
+static void a_ranged_target_in_clusters_has_limits(void)
+{
+    static const char *const cases[][2] = {
+        {"network.protocol", "direct"}, {"sensor.quantity", "concentration"},
+        {"source.path", "none"},        {"sensor.loss", "0.1"},
+        {"energy.battery_j", "1"},      {"faults.stuck_share", "0.1"},
+        {"faults.mute_for_s", "5"},     {"network.density", "1000"}, /* a field of 50 m x 1.77 */
+        {"target.speed_mph", "1000"},   {"source.duration_s", "1.9"},
+    };
+    char path[SCENARIO_PATH_MAX];
+    TEST_ASSERT_EQUAL_INT(0, scenario_find("zhou_nominal", path, error, sizeof error));
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        tearDown();
+        setUp();
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &scenario, error, sizeof error), error);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&scenario, "a.yaml", error, sizeof error), error);
+        TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, cases[i][0], cases[i][1], error, sizeof error));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(-1, scenario_check(&scenario, "a.yaml", error, sizeof error), cases[i][0]);
+        TEST_ASSERT_EQUAL_STRING_LEN("a.yaml: ", error, 8);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "expected"), error);
+    }
+}
+
 static void count_sound(void *context, const char *name, const char *path)
 {
     struct scenario listed;
@@ -188,10 +218,10 @@ static void count_sound(void *context, const char *name, const char *path)
 
 static void the_scenarios_that_come_along_are_sound(void)
 {
-    static const char *const names[] = {"luo_exp1", "luo_exp2", "luo_exp3", "luo_exp4"};
+    static const char *const names[] = {"luo_exp1", "luo_exp2", "luo_exp3", "luo_exp4", "zhou_nominal", "zhou_real"};
     char path[SCENARIO_PATH_MAX];
     size_t count = 0;
-    for (size_t i = 0; i < 4; i++) {
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         TEST_ASSERT_EQUAL_INT(0, scenario_find(names[i], path, error, sizeof error));
     }
     const size_t listed = scenario_list(count_sound, &count);
@@ -225,6 +255,7 @@ int main(void)
     RUN_TEST(a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation);
     RUN_TEST(set_refuses_what_a_file_may_not_hold_and_changes_nothing_then);
     RUN_TEST(keys_that_contradict_each_other_are_refused);
+    RUN_TEST(a_ranged_target_in_clusters_has_limits);
     RUN_TEST(the_scenarios_that_come_along_are_sound);
     RUN_TEST(a_deployment_file_is_found_beside_its_scenario);
     port_exit(UNITY_END() > 0);
