@@ -85,8 +85,10 @@ static void run(uint64_t seed)
 {
     generator = seed * 0x9e3779b97f4a7c15u + 1;
     struct mh_range state;
-    const struct mh_range_config config = {
-        .range_sd_m = (mh_real)range_sd, .acceleration_sd_mps2 = (mh_real)acceleration_sd, .height_m = (mh_real)height};
+    const struct mh_range_config config = {.range_sd_m = (mh_real)range_sd,
+                                           .acceleration_sd_mps2 = (mh_real)acceleration_sd,
+                                           .speed_mps = 2.5f,
+                                           .height_m = (mh_real)height};
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.init(&state, &config, INTERVAL));
     double x[4] = {10 + 10 * uniform(), 10 + 10 * uniform(), 0, 0};
     double P[4][4] = {{100, 0, 0, 0}, {0, 100, 0, 0}, {0, 0, 6.25, 0}, {0, 0, 0, 6.25}};

@@ -145,9 +145,19 @@
 #define MH_CLOCK_NEIGHBOURS 8
 #endif
 
+/* Anchors whose bias the tracker `range` can learn. The first ones it hears have it; further ones are taken for noisier. Each is a state of
+ * its Kalman filter, so that eight cost 300 bytes of state and as many of stack, and time only where biases are learned. */
+#ifndef MH_RANGE_BIASES_MAX
+#ifdef __AVR__
+#define MH_RANGE_BIASES_MAX 0
+#else
+#define MH_RANGE_BIASES_MAX 8
+#endif
+#endif
+
 /* Largest number of states of a Kalman filter. A filter costs 4 (n + n (n + 1) / 2) bytes, whatever part of it is used. */
 #ifndef MH_KALMAN_STATES_MAX
-#define MH_KALMAN_STATES_MAX 4
+#define MH_KALMAN_STATES_MAX (4 + MH_RANGE_BIASES_MAX)
 #endif
 
 #if MH_REPORTS_MAX < 4 || MH_REPORTS_MAX > 4096
@@ -198,9 +208,12 @@
 #error                                                                                                                 \
     "MH_CLOCK_PAIRS must be 2 to 32, MH_CLOCK_NEIGHBOURS 1 to 250: a line needs two pairs, and its sums have room for 32"
 #endif
-#if MH_KALMAN_STATES_MAX < 4 || MH_KALMAN_STATES_MAX > 16
+#if MH_RANGE_BIASES_MAX < 0 || MH_RANGE_BIASES_MAX > 12
+#error "MH_RANGE_BIASES_MAX must be 0 to 12: the work of each range grows with its square"
+#endif
+#if MH_KALMAN_STATES_MAX < 4 + MH_RANGE_BIASES_MAX || MH_KALMAN_STATES_MAX > 16
 #error                                                                                                                 \
-    "MH_KALMAN_STATES_MAX must be 4 to 16: the trackers need four; the work grows with the cube, the stack with the square"
+    "MH_KALMAN_STATES_MAX must be 4 + MH_RANGE_BIASES_MAX to 16: the work grows with the cube, the stack with the square"
 #endif
 
 #endif

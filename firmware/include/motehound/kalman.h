@@ -6,7 +6,11 @@
  * one update each; they need not belong to the same instant.
  *
  * Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, chapter V. Several filters may run side by
- * side: nothing is shared. Symmetric matrices are packed as matrix.h says. Stack: 4 (n^2 + n (n + 1) / 2) bytes in predict, 8 n and a copy of the filter in update, and a few registers. */
+ * side: nothing is shared. Symmetric matrices are packed as matrix.h says. Stack: 4 MH_KALMAN_STATES_MAX^2 bytes and a copy of the filter in
+ * predict, 8 MH_KALMAN_STATES_MAX and a copy of it in update, and a few registers.
+ *
+ * States that never change but are to be learned (a sensor's bias) come after those that move: with P = U D U' the time update leaves
+ * their factors alone, but for the rows of U that tie them to the moving ones, which become F times themselves. */
 #ifndef MOTEHOUND_KALMAN_H
 #define MOTEHOUND_KALMAN_H
 
@@ -17,6 +21,7 @@
 
 struct mh_kalman {
     uint8_t n;                                        /* states, 1 to MH_KALMAN_STATES_MAX */
+    uint8_t moving;                                   /* the first of them, which the time update moves */
     mh_real x[MH_KALMAN_STATES_MAX];                  /* the estimate; its owner may read it, and shift it */
     mh_real ud[MH_PACKED_SIZE(MH_KALMAN_STATES_MAX)]; /* packed: D on the diagonal, U above it */
 };
@@ -34,9 +39,14 @@ struct mh_gate {
  * positive definite to the precision of mh_real). */
 enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real *x, const mh_real *P);
 
-/* x = F x, P = F P F' + Q. F: n x n, row by row; Q: packed, positive semidefinite. A direction whose variance is lost in the
- * rounding of a larger one keeps 2^-21 of that one. Leading zeros of the rows of F cost nothing: about n (n + 1) (2 n + 10) / 6
- * multiplications for an upper triangular F, about n^2 (n + 4) for a full one; n divisions.
+/* One more state, that does not move and that nothing is known of but its mean and variance. Errors: MH_ERR_CAPACITY (there are
+ * MH_KALMAN_STATES_MAX), MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (variance not above 0). */
+enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real variance);
+
+/* x = F x, P = F P F' + Q for the n = filter->moving states. F: n x n, row by row; Q: packed, positive semidefinite. A direction whose
+ * variance is lost in the rounding of a larger one keeps 2^-21 of that one. Leading zeros of the rows of F cost nothing: about
+ * n (n + 1) (2 n + 10) / 6 multiplications for an upper triangular F, about n^2 (n + 4) for a full one; n divisions. With m states that do
+ * not move, m n (n + 1) / 2 or m n^2 multiplications more.
  * Errors: MH_ERR_NOT_FINITE (an input, or the result overflows), MH_ERR_SINGULAR (F P F' + Q has a variance of 0). */
 enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q);
 
@@ -47,8 +57,14 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
 enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_real innovation, mh_real variance,
                                 struct mh_gate *gate);
 
+/* The first `count` rows and columns of P, packed. */
+void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P);
+
 /* P, packed. */
-void mh_kalman_covariance(const struct mh_kalman *filter, mh_real *P);
+static inline void mh_kalman_covariance(const struct mh_kalman *filter, mh_real *P)
+{
+    mh_kalman_covariance_of(filter, filter->n, P);
+}
 
 /* F and Q of motion at constant velocity in the plane for dt seconds, states (x, y, vx, vy), with white acceleration of
  * `intensity` (m/s2)2 s in each axis (Bar-Shalom, Li and Kirubarajan, 2001, Eq. (6.2.2-12)). F: 16 elements, Q: 10, packed. */

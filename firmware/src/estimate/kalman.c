@@ -50,7 +50,7 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
         return MH_ERR_ARGUMENT;
     }
     struct mh_kalman started;
-    started.n = n;
+    started.n = started.moving = n;
     for (uint_fast8_t i = 0; i < n; i++) {
         if (!mh_finite(x[i])) {
             return MH_ERR_NOT_FINITE;
@@ -67,13 +67,44 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
     return status;
 }
 
-enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q)
+enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real variance)
 {
     const uint8_t n = filter->n;
+    if (n >= MH_KALMAN_STATES_MAX) {
+        return MH_ERR_CAPACITY;
+    }
+    if (!mh_finite(mean) || !mh_finite(variance)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    if (variance < SMALLEST) {
+        return MH_ERR_SINGULAR;
+    }
+    mh_real *column = filter->ud + MH_PACKED(0, n);
+    for (uint_fast8_t i = 0; i < n; i++) {
+        column[i] = 0;
+    }
+    column[n] = variance;
+    filter->x[n] = mean;
+    filter->n++;
+    return MH_OK;
+}
+
+/* Copy what is in use: x from `from` on, P from that column on. */
+static void copy(struct mh_kalman *to, const struct mh_kalman *filter, uint8_t from)
+{
+    const int first = MH_PACKED(0, from);
+    const int last = MH_PACKED(0, filter->n);
+    memcpy(to->x + from, filter->x + from, (size_t)(filter->n - from) * sizeof to->x[0]);
+    memcpy(to->ud + first, filter->ud + first, (size_t)(last - first) * sizeof to->ud[0]);
+}
+
+enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q)
+{
+    const uint8_t n = filter->moving;
     struct mh_kalman next;
     mh_real W[MH_KALMAN_STATES_MAX][MH_KALMAN_STATES_MAX]; /* F U */
     mh_real *p = next.ud;
-    next.n = n;
+    copy(&next, filter, n);
     for (uint_fast8_t j = 0; j < n; j++) {
         mh_real scaled[MH_KALMAN_STATES_MAX]; /* row j of F U D */
         uint_fast8_t first = 0;               /* F is zero before it in this row, and so is F U */
@@ -104,11 +135,23 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
             }
             *p++ = sum;
         }
+        for (uint_fast8_t k = n; k < filter->n; k++) {
+            const mh_real *still = filter->ud + MH_PACKED(0, k);
+            mh_real sum = 0;
+            for (uint_fast8_t m = first; m < n; m++) {
+                sum += F[m] * still[m];
+            }
+            if (!mh_finite(sum)) {
+                return MH_ERR_NOT_FINITE;
+            }
+            next.ud[MH_PACKED(j, k)] = sum;
+        }
         F += n;
     }
     enum mh_status status = factor(n, next.ud, true);
     if (status == MH_OK) {
-        *filter = next;
+        next.n = filter->n;
+        copy(filter, &next, 0);
     }
     return status;
 }
@@ -142,7 +185,9 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
                                 struct mh_gate *gate)
 {
     const uint8_t n = filter->n;
-    const struct mh_kalman before = *filter;
+    struct mh_kalman before;
+    before.n = n;
+    copy(&before, filter, 0);
     mh_real f[MH_KALMAN_STATES_MAX]; /* U' h */
     mh_real g[MH_KALMAN_STATES_MAX]; /* D f, which becomes P h column by column */
     mh_real predicted = 0;           /* h' P h */
@@ -194,7 +239,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
         sum += filter->x[j];
     }
     if (!fits || !mh_finite(sum)) {
-        *filter = before;
+        copy(filter, &before, 0);
         return MH_ERR_NOT_FINITE;
     }
     if (gate) {
@@ -203,10 +248,10 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
     return MH_OK;
 }
 
-void mh_kalman_covariance(const struct mh_kalman *filter, mh_real *P)
+void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P)
 {
     const uint8_t n = filter->n;
-    for (uint_fast8_t j = 0; j < n; j++) {
+    for (uint_fast8_t j = 0; j < count; j++) {
         for (uint_fast8_t i = 0; i <= j; i++) {
             mh_real sum = 0;
             for (uint_fast8_t k = j; k < n; k++) {
