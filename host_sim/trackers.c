@@ -81,7 +81,10 @@ static void set_up_range(struct tracker_choice *choice, const struct scenario *s
     mh_range_config_default(config);
     config->range_sd_m = (mh_real)target.range_sd_m;
     config->acceleration_sd_mps2 = (mh_real)target.acceleration_sd_mps2;
+    config->speed_mps = (mh_real)target.speed_mps;
     config->height_m = (mh_real)target.height_m;
+    config->sensing_range_m = region ? (mh_real)scenario->sensor.range_m : 0;
+    config->tolerance_m = (mh_real)scenario->tracker.tolerance_m;
 }
 
 static void set_up_pftl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
@@ -128,7 +131,8 @@ static const struct {
      QUANTITY_CONCENTRATION, set_up_diffusion},
     {&mh_tracker_luo, "moving diffusion source: least squares and Sage-Husa filter (Luo, Chai and Yang)",
      QUANTITY_CONCENTRATION, set_up_luo},
-    {&mh_tracker_range, "ranged target: constant velocity, extended Kalman filter", QUANTITY_RANGE, set_up_range},
+    {&mh_tracker_range, "ranged target: maximum likelihood of an instant, Kalman filter of constant velocity",
+     QUANTITY_RANGE, set_up_range},
     {&mh_tracker_pftl, "ranged target: particles drawn anew about its predicted place (Zhou et al.)", QUANTITY_RANGE,
      set_up_pftl},
     {&mh_tracker_msl, "ranged target: particles that all who detect it can have (MSL, range-free)", QUANTITY_RANGE,
