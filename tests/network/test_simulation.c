@@ -286,7 +286,7 @@ static void refuses_what_it_cannot_run(void)
     static char unknown[] = "magic", range[] = "range";
     struct scenario scenario = e1();
     scenario.tracker.name = unknown;
-    assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo or range");
+    assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo, range, pftl, msl or centroid");
     scenario.tracker.name = range;
     assert_refused(&scenario, "tracker.name: `range` works on ranges");
     scenario = e1();
