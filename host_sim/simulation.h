@@ -2,6 +2,7 @@
 #ifndef MOTEHOUND_SIM_SIMULATION_H
 #define MOTEHOUND_SIM_SIMULATION_H
 
+#include "bounds/bounds.h"
 #include "energy/energy.h"
 #include "motehound/mote.h"
 #include "radio/loss.h"
@@ -69,6 +70,7 @@ struct simulation_counters {
     struct energy_totals energy; /* all NaN where energy is not accounted for */
     /* of the motes' network time, once it has settled; NaN where clocks are ideal */
     double clock_error_median_ms, clock_error_p99_ms, clock_known_share;
+    struct bounds bounds; /* filled by bounds_of, not by the run */
 };
 
 /* Run `scenario` with `seed`. Deterministic: the same scenario, seed and library give the same calls. `stop` (may be NULL) is

@@ -29,6 +29,11 @@ static double of_clusters(const struct simulation_counters *counters, uint32_t v
     return counters->clusters.present ? value : (double)NAN;
 }
 
+static double of_bounds(const struct simulation_counters *counters, double value)
+{
+    return counters->bounds.apply ? value : (double)NAN;
+}
+
 static double energy_mj(const struct simulation_counters *counters, int state, int cause)
 {
     double sum = 0;

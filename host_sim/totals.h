@@ -61,6 +61,9 @@
     X(REPORTS_PER_SAMPLE, "reports_per_sample", per_sample(c, of_clusters(c, c->clusters.total.reports)), "positions sent to the sink, by sampling instant") \
     X(ASKED_PER_SAMPLE, "asked_per_sample", per_sample(c, of_clusters(c, c->clusters.total.asked)), "nodes that a head asked to sample, by sampling instant") \
     X(ANSWERED_PER_SAMPLE, "answered_per_sample", per_sample(c, of_clusters(c, c->clusters.total.answered)), "of these such that measured the target") \
+    X(PCRB_M, "pcrb_m", of_bounds(c, c->bounds.pcrb_m), "ranged walk: the posterior Cramer-Rao bound of position_rmse_m")                                 \
+    X(CLUSTERS_LEAST, "clusters_least", of_bounds(c, (double)c->bounds.hand_overs), "ranged target: the least hand-overs in hindsight, between heads that sense it at every instant") \
+    X(REPORTS_LEAST, "reports_least", per_sample(c, of_bounds(c, (double)c->bounds.reports)), "ranged target: the least reports in hindsight that follow it within tracker.tolerance_m, by sampling instant") \
     X(CLOCK_ERROR_MEDIAN_MS, "clock_error_median_ms", c->clock_error_median_ms, "median of the error of the motes' network time, over motes and time")\
     X(CLOCK_ERROR_P99_MS, "clock_error_p99_ms", c->clock_error_p99_ms, "99th percentile of the error of the motes' network time")                  \
     X(CLOCK_KNOWN_SHARE, "clock_known_share", c->clock_known_share, "share of the motes and times at which the network time was known")            \

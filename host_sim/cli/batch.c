@@ -49,6 +49,9 @@ static bool execute(const struct work *work, unsigned run, struct slot *slot)
                                                               batch->stop, &counters, slot->error, ERROR_SIZE)
                                           : simulation_replay(batch->scenario, batch->recording, seed, &observer,
                                                               batch->stop, &counters, slot->error, ERROR_SIZE)) == 0;
+        if (sound && batch->recording == NULL) {
+            sound = bounds_of(batch->scenario, seed, &counters.bounds, slot->error, ERROR_SIZE) == 0;
+        }
         if (sound) {
             bus_end(&bus, &counters);
         }

@@ -34,6 +34,7 @@ struct errors {
     X(ESTIMATES, "estimates", "positions that the head reported")                                                           \
     X(LOCALISATION_ERROR_RS, "localisation_error_rs", "ranged target: mean error of the heads' positions, as a share of sensor.range_m, from sample metrics.skip_first on") \
     X(SINK_ERROR_RS, "sink_error_rs", "clusters: the same of the positions that the sink has")                              \
+    X(RMSE_OVER_PCRB, "rmse_over_pcrb", "ranged walk: position_rmse_m over pcrb_m")                                         \
     X(LONGEST_GAP_S, "longest_gap_s", "ranged target: longest time without a head's position within sensor.range_m of the target")
 /* clang-format on */
 
