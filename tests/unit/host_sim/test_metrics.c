@@ -228,6 +228,72 @@ static void a_track_is_lost_after_so_many_successive_errors_of_one_target(void)
     TEST_ASSERT_EQUAL_size_t(60 - 2 * 3, errors.position.count);
 }
 
+/* The head is off by 10 m, but by 60 m at instants 8 to 11 and silent at 20 to 24; the sink, told from instant 2 on, by 20 m. */
+static void followed_in_clusters(const struct observer *observer, int i)
+{
+    const struct truth truth = {i, i, 0, true};
+    const struct mh_estimate sink = {.position = {(float)i, 20}, .velocity = {1, 0}};
+    if (i >= 20 && i < 25) {
+        observer->truth(observer->context, &truth);
+    } else {
+        tell(observer, i, true, (float)i, i >= 8 && i < 12 ? -60 : 10, 0, 0);
+    }
+    if (i >= 2) {
+        observer->sink(observer->context, i, &sink, &truth);
+    }
+}
+
+static void a_ranged_target_is_judged_by_its_sensing_range(void)
+{
+    scenario.sensor.quantity = QUANTITY_RANGE;
+    scenario.metrics.skip_first = 5;
+    run_of(40, followed_in_clusters);
+    NEAR((26 * 10 + 4 * 60) / 30.0 / 50, values[METRIC_LOCALISATION_ERROR_RS]);
+    NEAR(0.4, values[METRIC_SINK_ERROR_RS]);
+    NEAR(6, values[METRIC_LONGEST_GAP_S]); /* from 19 s to 25 s; from 7 s to 12 s it is 5 s */
+    TEST_ASSERT_EQUAL_size_t(38, recorder.sink_count);
+    TEST_ASSERT_EQUAL_INT(-1, recorder.sinks[0].head);
+    NEAR(2, recorder.sinks[0].true_x_m);
+}
+
+/* Its last position comes 10 s before the end. */
+static void given_up(const struct observer *observer, int i)
+{
+    const struct truth truth = {i, i, 0, true};
+    if (i >= 4 && i < 30) {
+        tell(observer, i, true, (float)i, 0, 0, 0);
+    } else {
+        observer->truth(observer->context, &truth);
+    }
+}
+
+static void a_gap_may_be_at_either_end(void)
+{
+    scenario.sensor.quantity = QUANTITY_RANGE;
+    run_of(40, given_up);
+    NEAR(10, values[METRIC_LONGEST_GAP_S]);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_SINK_ERROR_RS]) && isnan(values[METRIC_CLUSTERS]));
+    tearDown();
+    setUp();
+    run_of(40, given_up);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_LONGEST_GAP_S]) && isnan(values[METRIC_LOCALISATION_ERROR_RS]));
+}
+
+static void clusters_are_counted_where_there_are_any(void)
+{
+    struct simulation_counters counters = {.samples = 50, .clusters.total = {30, 4, 25, 400, 200}};
+    double totals[TOTAL_COUNT];
+    totals_of(&counters, totals);
+    TEST_ASSERT_TRUE(isnan(totals[TOTAL_CLUSTERS]) && isnan(totals[TOTAL_REPORTS_PER_SAMPLE]));
+    counters.clusters.present = true;
+    totals_of(&counters, totals);
+    NEAR(30, totals[TOTAL_CLUSTERS]);
+    NEAR(4, totals[TOTAL_RECOVERIES]);
+    NEAR(0.5, totals[TOTAL_REPORTS_PER_SAMPLE]);
+    NEAR(8, totals[TOTAL_ASKED_PER_SAMPLE]);
+    NEAR(4, totals[TOTAL_ANSWERED_PER_SAMPLE]);
+}
+
 static void pooled_errors_weigh_estimates_not_runs(void)
 {
     struct errors one = {0}, pooled = {0};
@@ -256,6 +322,9 @@ int main(void)
     RUN_TEST(what_a_tracker_does_not_state_does_not_apply);
     RUN_TEST(without_truth_there_are_no_errors);
     RUN_TEST(a_track_is_lost_after_so_many_successive_errors_of_one_target);
+    RUN_TEST(a_ranged_target_is_judged_by_its_sensing_range);
+    RUN_TEST(a_gap_may_be_at_either_end);
+    RUN_TEST(clusters_are_counted_where_there_are_any);
     RUN_TEST(pooled_errors_weigh_estimates_not_runs);
     port_exit(UNITY_END() > 0);
     return 0;
