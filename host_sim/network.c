@@ -194,7 +194,9 @@ static void act(struct network *network, const struct host_action *action)
         transmit(network, action);
         break;
     case HOST_REPORT:
-        account_step(&network->account, action->mote, action->time, action->as.estimate.measurements);
+        if (roster_computes(config->roster, action->mote)) {
+            account_step(&network->account, action->mote, action->time, action->as.estimate.measurements);
+        }
         config->report(config->context, action->mote, seconds(network, (int64_t)action->time),
                        seconds(network, time_of(action->as.estimate.time, action->time)), &action->as.estimate);
         break;

@@ -148,6 +148,11 @@ struct host_mote roster_mote(const struct roster *roster, uint32_t mote)
     return what;
 }
 
+bool roster_computes(const struct roster *roster, uint32_t mote)
+{
+    return (mote >= roster->deployment.count) != roster->kit.protocol.in_turns;
+}
+
 bool roster_has_clocks(const struct roster *roster)
 {
     return roster->kit.synchronised ||

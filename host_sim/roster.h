@@ -50,6 +50,9 @@ void roster_free(struct roster *roster);
 /* What mote `mote` is. It points into the roster. */
 struct host_mote roster_mote(const struct roster *roster, uint32_t mote);
 
+/* It can be a head. */
+bool roster_computes(const struct roster *roster, uint32_t mote);
+
 /* Some mote's idea of the network's time may be wrong. */
 bool roster_has_clocks(const struct roster *roster);
 
