@@ -55,4 +55,8 @@ mh_tick mh_head_deadline(const struct mh_head *head);
  * Errors: MH_NONE (no position at this instant), or what the tracker's step returns; the next instant is gathered all the same. */
 enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate);
 
+/* The same in two parts, for who wants to see the measurements, which are measurements[0 .. *used) in between. */
+enum mh_status mh_head_step(struct mh_head *head, struct mh_estimate *estimate, uint16_t *used);
+void mh_head_go_on(struct mh_head *head, uint16_t used);
+
 #endif

@@ -52,7 +52,7 @@ struct mh_link {
 
 /* What mh_link_sent has found out. */
 enum mh_link_outcome {
-    MH_LINK_OTHER, /* a broadcast is out, or is not */
+    MH_LINK_OTHER, /* a broadcast or a direct message is out, or is not */
     MH_LINK_TAKEN, /* neighbour `to` has the message */
     MH_LINK_LOST,  /* neighbour `to` did not acknowledge it */
     MH_LINK_BUSY   /* it did not go out; the neighbour is not to blame */
@@ -67,6 +67,9 @@ enum mh_status mh_link_init(struct mh_link *link, const struct mh_link_config *c
 
 /* Send to all in range, at once. */
 void mh_link_broadcast(struct mh_link *link, const struct mh_message *message);
+
+/* Send to one neighbour, at once and once, past the queue: mh_link_sent() then answers MH_LINK_OTHER. */
+void mh_link_direct(struct mh_link *link, mh_node_id neighbour, const struct mh_message *message);
 
 /* Take a message in an envelope, one's own or a neighbour's, to send it on. A message sent again bears the hop count it had; one that
  * came back another way bears another. In MH_ENVELOPE_ROUTE each node is passed once, so there the hop count does not matter. A

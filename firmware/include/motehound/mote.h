@@ -8,7 +8,9 @@
  * time besides, and all that is compared between motes is in it: samples and measurements, requests, the head's instants, estimates. Waits
  * and timers, the protocol's too, stay in the mote's own time, which no correction disturbs. When the network time becomes known or
  * jumps, the sensor's history and the head begin anew; a mote that does not know it yet refuses readings, closes no instant,
- * but relays. Such a mote listens all the time, whatever its protocol needs. */
+ * but relays. Such a mote listens all the time, whatever its protocol needs.
+ *
+ * Where the protocol lets motes take turns (protocol.h), a mote with a head's configuration is a plain node until the protocol has it lead. */
 #ifndef MOTEHOUND_MOTE_H
 #define MOTEHOUND_MOTE_H
 
@@ -24,7 +26,7 @@ struct mh_port {
     void (*transmit)(void *context, mh_node_id destination, const uint8_t *frame, size_t length);
     /* Call mh_mote_alarm at `time` (at once if that is past); replaces the alarm set before. */
     void (*set_alarm)(void *context, mh_tick time);
-    /* The head has an estimate. Valid during the call only. May be NULL on a mote that does not compute. */
+    /* The head has an estimate; or a mote that does not compute has been told of one. Valid during the call only. NULL on a mote that neither can. */
     void (*report)(void *context, const struct mh_estimate *estimate);
     /* The radio may sleep (true) or must listen (false, and so from the start); called on changes, which come from the
      * protocol. Transmitting and the sensor are not concerned. NULL if the owner does not care. */
@@ -38,7 +40,7 @@ struct mh_mote_config {
     mh_node_id id; /* below MH_BROADCAST, unique in the network */
     struct mh_place place;
     const struct mh_sensor_config *sensor; /* NULL on a mote without a sensor */
-    const struct mh_head_config *head;     /* NULL on a mote that does not compute */
+    const struct mh_head_config *head;     /* NULL on a mote that never computes */
     const struct mh_protocol *protocol;
     const void *protocol_config;
     void *protocol_state;                   /* protocol->state_size bytes */
@@ -74,6 +76,7 @@ struct mh_mote {
     bool protocol_alarm_set : 1; /* the protocol's timer() is due at protocol_alarm */
     bool alarm_set : 1;          /* `alarm` is what the port was last told: the earliest of all that is due */
     bool may_sleep : 1;          /* as last told to the port */
+    bool leads : 1;              /* this mote is a head, now */
     mh_tick asked_time;
     mh_tick report_instant;
     mh_tick report_time;

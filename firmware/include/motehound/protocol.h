@@ -62,16 +62,22 @@ struct mh_protocol_port {
     /* The radio must be able to receive (true, and so from the start) or need not (false). */
     void (*listen)(void *context, bool needed);
 
-    /* What follows is for protocols in which heads come and go; others leave it alone. */
+    /* What follows is for protocols in which motes take turns as heads; others leave it alone. */
 
-    /* Sample now, for instant `time`. What the sensor senses comes to publish(), asked for or not worth a report as it may be. */
+    /* The network's time at the mote's own time `own` -> *network. Returns false if it is not known yet. And the other way round. */
+    bool (*network)(void *context, mh_tick own, mh_tick *network);
+    mh_tick (*own)(void *context, mh_tick network);
+    /* Sample now, for instant `time`. What the sensor senses comes to publish(), or on a head to closed(), whether it is worth a report or not; at
+     * once, during the call, if the sample was taken before. */
     void (*sense)(void *context, mh_tick now, mh_tick time);
     /* This mote is head from the first instant after `now`, with a track that was saved (length 0: none); it goes on gathering measurements and
-     * closing instants until it is told not to be. Errors: MH_ERR_ARGUMENT (it cannot compute), or what load() returns. */
+     * closing instants until it is told not to be. Not to be called from closed(). Errors: MH_ERR_ARGUMENT (it cannot compute), or what load() returns:
+     * then it is no head. */
     enum mh_status (*lead)(void *context, mh_tick now, const uint8_t *track, size_t length);
     void (*follow)(void *context);
-    /* This head's track, as the tracker saves it, and its restart. Errors: MH_NONE (no track). */
+    /* This head's track, as the tracker saves it; what the tracker expects at `time`; and its restart. Errors: MH_NONE (no track). */
     enum mh_status (*save)(void *context, uint8_t *track, size_t *length);
+    enum mh_status (*expect)(void *context, mh_tick time, struct mh_estimate *estimate);
     void (*restart)(void *context);
     /* This mote, which need not compute, knows where the target is: to its owner. */
     void (*tell)(void *context, const struct mh_estimate *estimate);
@@ -81,7 +87,7 @@ struct mh_protocol_port {
 struct mh_protocol_node {
     mh_node_id id;
     struct mh_place place;
-    bool is_head; /* this mote computes */
+    bool is_head; /* this mote computes, or can where motes take turns */
     const struct mh_protocol_port *port;
     void *context;
 };
@@ -91,6 +97,7 @@ struct mh_protocol {
     size_t state_size;    /* bytes of the state that init() fills */
     size_t config_size;   /* bytes of the configuration that init() reads */
     mh_wire_types *types; /* all that it sends and takes */
+    bool in_turns;        /* a mote that can compute is head only while it is told to lead() */
 
     /* `config` and `node` outlive the state. Errors: MH_ERR_ARGUMENT (a configuration value outside the range its header
      * gives). */
@@ -109,9 +116,12 @@ struct mh_protocol {
     enum mh_status (*ask)(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time);
     /* Head: tell the network that a track has begun or is lost. No effect on other motes. */
     void (*tell_tracking)(void *state, mh_tick now, bool tracking);
-    /* Head: an instant is closed: `estimate` is what the tracker made of the measurements, NULL if it has no position. May be NULL. */
+    /* Head: an instant is closed: `estimate` is what the tracker made of the measurements, NULL if it has no position. May be NULL. The
+     * head's own is among the measurements. */
     void (*closed)(void *state, mh_tick now, mh_tick instant, const struct mh_estimate *estimate,
                    const struct mh_measurement *measurements, size_t count);
+    /* The network's time has become known, or has jumped: no instant of before means anything, and the mote leads no more. May be NULL. */
+    void (*time_jumped)(void *state, mh_tick now);
     /* Add to `counters`. May be NULL. */
     void (*count)(const void *state, struct mh_protocol_counters *counters);
 };

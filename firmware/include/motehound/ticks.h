@@ -23,4 +23,12 @@ static inline mh_real mh_seconds_between(mh_tick earlier, mh_tick later)
 /* True if a is strictly before b. */
 static inline bool mh_tick_before(mh_tick a, mh_tick b) { return mh_ticks_between(a, b) > 0; }
 
+/* The first tick at or after `time` that is a whole number of periods from `epoch`, which may lie before or after it. */
+static inline mh_tick mh_tick_aligned(mh_tick epoch, mh_tick period, mh_tick time)
+{
+    const uint32_t since = time - epoch, until = epoch - time;
+    return mh_tick_before(epoch, time) ? epoch + (since + period - 1) / period * period
+                                       : epoch - until / period * period;
+}
+
 #endif

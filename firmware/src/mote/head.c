@@ -60,10 +60,7 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
     head->count = 0; /* the table stays as it is: it is large, and where heads take turns most motes never need it */
     head->tracking = false;
     head->counters = (struct mh_head_counters){0};
-    const uint32_t since = now - config->epoch, until = config->epoch - now;
-    head->instant = mh_tick_before(config->epoch, now)
-                        ? config->epoch + (since + config->interval - 1) / config->interval * config->interval
-                        : config->epoch - until / config->interval * config->interval;
+    head->instant = mh_tick_aligned(config->epoch, config->interval, now);
     return MH_OK;
 }
 
@@ -123,7 +120,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
 
 mh_tick mh_head_deadline(const struct mh_head *head) { return head->instant + head->config->window; }
 
-enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate)
+enum mh_status mh_head_step(struct mh_head *head, struct mh_estimate *estimate, uint16_t *used)
 {
     uint16_t due = 0; /* the others are already of the next instant */
     while (due < head->count && !is_of_next(head, &head->measurements[due])) {
@@ -135,8 +132,21 @@ enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate)
     const enum mh_status status = tracker->step(state, head->instant, head->measurements, due, estimate);
     head->counters.estimates += status == MH_OK;
     head->tracking = tracker->predict(state, head->instant, &expected) == MH_OK;
-    head->count = (uint16_t)(head->count - due);
-    memmove(&head->measurements[0], &head->measurements[due], head->count * sizeof head->measurements[0]);
+    *used = due;
+    return status;
+}
+
+void mh_head_go_on(struct mh_head *head, uint16_t used)
+{
+    head->count = (uint16_t)(head->count - used);
+    memmove(&head->measurements[0], &head->measurements[used], head->count * sizeof head->measurements[0]);
     head->instant += head->config->interval;
+}
+
+enum mh_status mh_head_close(struct mh_head *head, struct mh_estimate *estimate)
+{
+    uint16_t used;
+    const enum mh_status status = mh_head_step(head, estimate, &used);
+    mh_head_go_on(head, used);
     return status;
 }

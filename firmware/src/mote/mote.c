@@ -50,7 +50,7 @@ static void set_alarm(struct mh_mote *mote, bool used_up)
     if (mote->config->clock && mote->config->clock->due(mote->config->clock_state, &time)) {
         want(&alarm, time);
     }
-    if (mote->config->head && knows_time(mote)) {
+    if (mote->leads && knows_time(mote)) {
         want(&alarm, own_time(mote, mh_head_deadline(mote->config->head_state)));
     }
     const mh_tick next = alarm.time;
@@ -74,7 +74,7 @@ static void report(struct mh_mote *mote, mh_tick now, const struct mh_sample *sa
     };
     mote->counters.reports++;
     mote->counters.reports_asked += (flags & MH_MEASUREMENT_ASKED) != 0;
-    if (mote->config->head) {
+    if (mote->leads) {
         (void)mh_head_measurement(mote->config->head_state, &measurement); /* counts what it refuses */
     } else if (mote->config->protocol->publish(protocol_state(mote), now, &measurement) != MH_OK) {
         mote->counters.reports_no_route++;
@@ -111,7 +111,7 @@ static void report_waiting(struct mh_mote *mote, mh_tick now)
 static void report_soon(struct mh_mote *mote, mh_tick now, const struct mh_sample *sample)
 {
     const mh_tick spread = mote->config->sensor->report_spread;
-    if (spread == 0 || mote->config->head) {
+    if (spread == 0 || mote->leads) {
         report_if_wanted(mote, now, sample);
     } else {
         mote->report_waits = true;
@@ -153,26 +153,32 @@ static void protocol_deliver(void *context, mh_tick now, const struct mh_measure
 {
     struct mh_mote *mote = context;
     (void)now;
-    if (mote->config->head) {
+    if (mote->leads) {
         (void)mh_head_measurement(mote->config->head_state, measurement); /* counts what it refuses */
     }
 }
 
-static void protocol_asked(void *context, mh_tick now, const struct mh_interest *interest, mh_tick time)
+/* The sample of instant `time` is to be reported. Returns true if it is still to be taken. */
+static bool ask_for_sample(struct mh_mote *mote, mh_tick now, mh_tick time)
 {
-    struct mh_mote *mote = context;
     struct mh_sample sample;
-    if (!mote->config->sensor || !mh_place_within(&mote->node.place, &interest->centre, interest->radius_mm)) {
-        return;
-    }
     const bool taken = mh_sensor_recall(&mote->sensor, time, &sample) == MH_OK;
     if (taken && sample.reported) {
-        return;
+        return false;
     }
     mote->asked = true;
     mote->asked_time = time;
     if (taken && !mote->report_waits) {
         report_soon(mote, now, &sample);
+    }
+    return !taken;
+}
+
+static void protocol_asked(void *context, mh_tick now, const struct mh_interest *interest, mh_tick time)
+{
+    struct mh_mote *mote = context;
+    if (mote->config->sensor && mh_place_within(&mote->node.place, &interest->centre, interest->radius_mm)) {
+        (void)ask_for_sample(mote, now, time);
     }
 }
 
@@ -193,6 +199,83 @@ static void protocol_listen(void *context, bool needed)
     }
 }
 
+/* ---- what a protocol in which motes take turns asks besides ---- */
+
+static bool protocol_network(void *context, mh_tick own, mh_tick *network)
+{
+    const struct mh_mote *mote = context;
+    if (!knows_time(mote)) {
+        return false;
+    }
+    *network = network_time(mote, own);
+    return true;
+}
+
+static mh_tick protocol_own(void *context, mh_tick network) { return own_time(context, network); }
+
+static void protocol_sense(void *context, mh_tick now, mh_tick time)
+{
+    struct mh_mote *mote = context;
+    if (mote->config->sensor && ask_for_sample(mote, now, time) && mote->port->sense) {
+        mote->port->sense(mote->port_context);
+    }
+}
+
+static enum mh_status protocol_lead(void *context, mh_tick now, const uint8_t *track, size_t length)
+{
+    struct mh_mote *mote = context;
+    const struct mh_head_config *config = mote->config->head;
+    struct mh_head *head = mote->config->head_state;
+    if (!config || !knows_time(mote) || (length > 0 && !config->tracker->load)) {
+        return MH_ERR_ARGUMENT;
+    }
+    const struct mh_head_counters counters = head->counters;
+    enum mh_status status = mh_head_init(head, config, network_time(mote, now) + 1);
+    head->counters = counters;
+    if (status == MH_OK && length > 0) {
+        status = config->tracker->load(config->tracker_state, track, length);
+    }
+    mote->leads = status == MH_OK;
+    return status;
+}
+
+static void protocol_follow(void *context)
+{
+    struct mh_mote *mote = context;
+    mote->leads = false;
+}
+
+static enum mh_status protocol_save(void *context, uint8_t *track, size_t *length)
+{
+    const struct mh_mote *mote = context;
+    return mote->leads && mote->config->head->tracker->save
+               ? mote->config->head->tracker->save(mote->config->head->tracker_state, track, length)
+               : MH_NONE;
+}
+
+static enum mh_status protocol_expect(void *context, mh_tick time, struct mh_estimate *estimate)
+{
+    const struct mh_mote *mote = context;
+    return mote->leads ? mote->config->head->tracker->predict(mote->config->head->tracker_state, time, estimate)
+                       : MH_NONE;
+}
+
+static void protocol_restart(void *context)
+{
+    const struct mh_mote *mote = context;
+    if (mote->leads && mote->config->head->tracker->restart) {
+        mote->config->head->tracker->restart(mote->config->head->tracker_state);
+    }
+}
+
+static void protocol_tell(void *context, const struct mh_estimate *estimate)
+{
+    const struct mh_mote *mote = context;
+    if (mote->port->report) {
+        mote->port->report(mote->port_context, estimate);
+    }
+}
+
 static const struct mh_protocol_port protocol_port = {
     .send = protocol_send,
     .set_timer = protocol_set_timer,
@@ -200,6 +283,15 @@ static const struct mh_protocol_port protocol_port = {
     .asked = protocol_asked,
     .tracking = protocol_tracking,
     .listen = protocol_listen,
+    .network = protocol_network,
+    .own = protocol_own,
+    .sense = protocol_sense,
+    .lead = protocol_lead,
+    .follow = protocol_follow,
+    .save = protocol_save,
+    .expect = protocol_expect,
+    .restart = protocol_restart,
+    .tell = protocol_tell,
 };
 
 /* ---- the events ---- */
@@ -219,6 +311,7 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
     mote->port_context = port_context;
     const struct mh_protocol_node node = {config->id, config->place, config->head != NULL, &protocol_port, mote};
     mote->node = node;
+    mote->leads = config->head && !config->protocol->in_turns;
     enum mh_status status = MH_OK;
     if (config->clock) {
         status = config->clock->init(config->clock_state, config->clock_config, config->id, now);
@@ -279,12 +372,16 @@ static void time_jumped(struct mh_mote *mote, mh_tick now)
     if (config->sensor) {
         (void)mh_sensor_init(&mote->sensor, config->sensor);
     }
-    if (config->head) {
+    if (mote->leads && !config->protocol->in_turns) {
         (void)mh_head_init(config->head_state, config->head, network_time(mote, now));
         if (mote->tracking) {
             mote->tracking = false;
             config->protocol->tell_tracking(protocol_state(mote), now, false);
         }
+    }
+    mote->leads = mote->leads && !config->protocol->in_turns;
+    if (config->protocol->time_jumped) {
+        config->protocol->time_jumped(protocol_state(mote), now);
     }
 }
 
@@ -335,14 +432,20 @@ static void close_instant(struct mh_mote *mote, mh_tick now)
     const struct mh_tracker *tracker = mote->config->head->tracker;
     struct mh_estimate estimate;
     struct mh_interest interest;
-    if (mh_head_close(head, &estimate) == MH_OK) {
+    uint16_t used;
+    const bool found = mh_head_step(head, &estimate, &used) == MH_OK;
+    if (found) {
         mote->port->report(mote->port_context, &estimate);
     }
     if (mote->tracking != head->tracking) {
         mote->tracking = head->tracking;
         protocol->tell_tracking(protocol_state(mote), now, head->tracking);
     }
-    if (tracker->interest && tracker->interest(mote->config->head->tracker_state, &interest) == MH_OK) {
+    if (protocol->closed) {
+        protocol->closed(protocol_state(mote), now, head->instant, found ? &estimate : NULL, head->measurements, used);
+    }
+    mh_head_go_on(head, used);
+    if (mote->leads && tracker->interest && tracker->interest(mote->config->head->tracker_state, &interest) == MH_OK) {
         (void)protocol->ask(protocol_state(mote), now, &interest, head->instant);
         protocol_asked(mote, now, &interest, head->instant);
     }
@@ -361,7 +464,7 @@ void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
     if (mote->config->clock && mote->config->clock->timer(mote->config->clock_state, now, &message)) {
         transmit(mote, mote->config->clock->types, MH_BROADCAST, &message);
     }
-    if (mote->config->head && knows_time(mote) &&
+    if (mote->leads && knows_time(mote) &&
         !mh_tick_before(network_time(mote, now), mh_head_deadline(mote->config->head_state))) {
         close_instant(mote, now);
     }

@@ -32,11 +32,16 @@ enum mh_status mh_link_init(struct mh_link *link, const struct mh_link_config *c
     return MH_OK;
 }
 
-void mh_link_broadcast(struct mh_link *link, const struct mh_message *message)
+void mh_link_direct(struct mh_link *link, mh_node_id neighbour, const struct mh_message *message)
 {
     uint8_t *before_or_after = link->in_air ? &link->behind : &link->ahead;
     (*before_or_after)++;
-    link->node->port->send(link->node->context, MH_BROADCAST, message);
+    link->node->port->send(link->node->context, neighbour, message);
+}
+
+void mh_link_broadcast(struct mh_link *link, const struct mh_message *message)
+{
+    mh_link_direct(link, MH_BROADCAST, message);
 }
 
 /* ---- what was taken before ---- */
