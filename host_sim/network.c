@@ -113,7 +113,8 @@ static void on_air(void *context, sim_time time, uint32_t sender, uint32_t desti
     const enum mh_message_kind kind = frame_kind(&network->kinds, bytes, length);
     network->frames_sent[kind]++;
     account_frame(&network->account, sender, time, account_cause(kind));
-    if (!network->config.observer->frame) {
+    const struct observer *observer = network->config.observer;
+    if (!observer->frame && !(observer->cluster && kind == MH_MESSAGE_FORM)) {
         return;
     }
     struct network_frame *frames =
@@ -217,10 +218,39 @@ static void act(struct network *network, const struct host_action *action)
     }
 }
 
-static void tell_frame(const struct network *network, const struct network_frame *frame)
+/* A head tells its members of a cluster more than once; the observer hears of it once. */
+static void tell_cluster(struct network *network, const struct network_frame *frame)
+{
+    const struct observer *observer = network->config.observer;
+    struct mh_message message;
+    if (!observer->cluster || frame_kind(&network->kinds, frame->bytes, frame->length) != MH_MESSAGE_FORM ||
+        mh_wire_decode(mh_wire_all, frame->bytes, frame->length, &message) != MH_OK) {
+        return;
+    }
+    const mh_form_t *form = &message.as.form;
+    const bool again = network->has_formed && network->formed.sender == form->sender &&
+                       network->formed.track == form->track && network->formed.generation == form->generation;
+    if (again) {
+        return;
+    }
+    mh_node_id members[sizeof form->members / sizeof form->members[0]];
+    for (int i = 0; i < form->count; i++) {
+        members[i] = (mh_node_id)form->members[i];
+    }
+    observer->cluster(observer->context, seconds(network, (int64_t)frame->time), (uint32_t)form->track,
+                      (mh_node_id)form->sender, members, form->count, network->has_formed);
+    network->formed = *form;
+    network->has_formed = true;
+}
+
+static void tell_frame(struct network *network, const struct network_frame *frame)
 {
     const struct observer *observer = network->config.observer;
     const struct roster *roster = network->config.roster;
+    tell_cluster(network, frame);
+    if (!observer->frame) {
+        return;
+    }
     const mh_node_id destination =
         frame->destination == RADIO_ALL ? MH_BROADCAST : roster_id(roster, frame->destination);
     observer->frame(observer->context, seconds(network, (int64_t)frame->time), roster_id(roster, frame->sender),

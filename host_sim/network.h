@@ -52,6 +52,8 @@ struct network {
     struct arena arena;                                  /* bytes and receivers of the window's frames */
     uint64_t windows, frames_sent[MH_MESSAGE_KINDS + 1]; /* the last: of no known kind */
     struct frame_kinds kinds;
+    mh_form_t formed; /* the cluster told last */
+    bool has_formed;
     struct account account;
     double *clock_error_s; /* of each mote, NaN where it does not know the time; NULL if all clocks are ideal */
     struct clock_errors clock_errors;

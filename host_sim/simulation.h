@@ -40,7 +40,7 @@ struct observer {
      * reported for that instant; only time, position, velocity and target count. */
     void (*sink)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time);
     /* Who follows a track from now on: its head and those that it asks. `is_new`: it counts as a cluster formed. */
-    void (*cluster)(void *context, double time_s, uint8_t track, mh_node_id head, const mh_node_id *members,
+    void (*cluster)(void *context, double time_s, uint32_t track, mh_node_id head, const mh_node_id *members,
                     size_t count, bool is_new);
     /* A frame goes on the air. */
     void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,

@@ -219,7 +219,7 @@ static void on_sink(void *context, double time_s, const struct mh_estimate *esti
     PUBLISH(bus, BUS_SINK, motehound_track_t, message, time_s);
 }
 
-static void on_cluster(void *context, double time_s, uint8_t track, mh_node_id head, const mh_node_id *members,
+static void on_cluster(void *context, double time_s, uint32_t track, mh_node_id head, const mh_node_id *members,
                        size_t count, bool is_new)
 {
     struct bus *bus = context;
@@ -233,7 +233,7 @@ static void on_cluster(void *context, double time_s, uint8_t track, mh_node_id h
     }
     const motehound_cluster_t message = {.time_s = time_s,
                                          .run = bus->run,
-                                         .track = track,
+                                         .track = (int32_t)track,
                                          .head = (int32_t)head,
                                          .is_new = is_new,
                                          .count = (int32_t)count,
