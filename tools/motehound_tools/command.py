@@ -57,10 +57,19 @@ def is_complete(folder: Path, runs: int, seed: int, program: Path) -> bool:
     return isinstance(summary, dict) and summary.get("runs") == runs and summary.get("seed") == seed
 
 
-def keys(program: Path) -> dict[str, str]:
-    """Of every key of a scenario what its values are, as `motehound list --keys` words it."""
+def listed(program: Path, what: str) -> list[str]:
+    """The lines of `motehound list`."""
     try:
-        told = subprocess.run([str(program), "list", "--keys"], capture_output=True, text=True, check=True)
+        told = subprocess.run([str(program), "list", what], capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError) as error:
         raise Failure(f"{program}: {error}") from None
-    return {line.split(None, 2)[0]: line.split(None, 2)[2] for line in told.stdout.splitlines()}
+    return told.stdout.splitlines()
+
+
+def keys(program: Path) -> dict[str, str]:
+    """Of every key of a scenario what its values are, as the program words it."""
+    return {line.split(None, 2)[0]: line.split(None, 2)[2] for line in listed(program, "--keys")}
+
+
+def metrics(program: Path) -> set[str]:
+    return {line.split()[0] for line in listed(program, "--metrics")}

@@ -71,10 +71,12 @@ class Quantity(Part):
 class Drawing(Part):
     """What the report draws of a panel. Axes that are neither `x` nor `lines` are averaged over."""
 
-    kind: Literal["lines", "bars"] = "lines"
-    x: str = ""  # the first axis; with `bars` nothing: one bar for each series
+    title: str = ""
+    kind: Literal["lines", "bars"] = "lines"  # bars: one for each series, with every y as a part of it
+    x: str = ""  # of lines; the first axis
     lines: str = ""  # an axis with a line for each of its values
-    label: str = ""  # of the upright axis
+    label: str = ""  # of the upright axis, or of the bars
+    log: bool = False  # lines over a logarithmic axis
     y: Annotated[list[Quantity], Field(min_length=1)]
     bounds: list[Quantity] = []
 
@@ -94,7 +96,7 @@ class Panel(Part):
 
 
 class Experiment(Panel):
-    """What a panel does not say for itself is as the experiment says; settings add up."""
+    """What a panel does not say for itself is as the experiment says; settings add up. Without panels it is one itself."""
 
     scenario: str
     description: str = ""
@@ -111,14 +113,29 @@ class Point:
     seeds: list[int]
 
 
+def panels(experiment: Experiment) -> list[Panel]:
+    """Each with all that it takes over from the experiment; one without a title where the experiment has none."""
+    usual = [Drawing(label="RMSE, m", y=[Quantity(metric="position_rmse_m")], kind="lines" if experiment.grid else "bars")]
+    return [
+        Panel(
+            title=panel.title,
+            settings=experiment.settings | panel.settings,
+            series=panel.series or experiment.series or [Series(name="")],
+            grid=panel.grid or experiment.grid,
+            seeds=panel.seeds or experiment.seeds,
+            draw=panel.draw or experiment.draw or usual,
+        )
+        for panel in experiment.panels or [Panel()]
+    ]
+
+
 def points(experiment: Experiment) -> Iterator[Point]:
     """In the order of the table: panels, series, the axes, the last one fastest."""
-    for panel in experiment.panels or [experiment]:
-        axes = panel.grid or experiment.grid
-        for series in panel.series or experiment.series or [Series(name="")]:
-            for values in itertools.product(*axes.values()):
-                settings = experiment.settings | panel.settings | series.settings | dict(zip(axes, values))
-                yield Point(panel.title, series.name, settings, panel.seeds or experiment.seeds)
+    for panel in panels(experiment):
+        for series in panel.series:
+            for values in itertools.product(*panel.grid.values()):
+                settings = panel.settings | series.settings | dict(zip(panel.grid, values))
+                yield Point(panel.title, series.name, settings, panel.seeds)
 
 
 def keys(experiment: Experiment) -> list[str]:
@@ -161,30 +178,25 @@ def _expectation(error: dict[str, Any]) -> str:
 
 def _check_names(experiment: Experiment, source: Source) -> None:
     """What hangs together between the parts: axes that are drawn exist, and names and titles tell the rows apart."""
-    if experiment.panels and (experiment.draw or experiment.title in {panel.title for panel in experiment.panels}):
-        raise source.failure(("draw",) if experiment.draw else ("title",), "expected in the panels, each its own")
     titles: list[str] = []
-    for index, panel in enumerate(experiment.panels or [experiment]):
+    for index, panel in enumerate(panels(experiment)):
         at: tuple[str | int, ...] = ("panels", index) if experiment.panels else ()
         if panel.title in titles:
             raise source.failure((*at, "title"), f"expected a title for each panel, found '{panel.title}' again")
         titles.append(panel.title)
-        axes = panel.grid or experiment.grid
-        names = [series.name for series in panel.series or experiment.series]
+        names = [series.name for series in panel.series]
         if len(set(names)) != len(names):
             raise source.failure((*at, "series"), "expected a name for each series, found one twice")
-        if not (panel.seeds or experiment.seeds):
+        if not panel.seeds:
             raise source.failure((*at, "seeds"), "expected, but absent")
         for number, drawing in enumerate(panel.draw):
-            for key in ("x", "lines"):
-                axis = getattr(drawing, key)
-                if axis and axis not in axes:
-                    where = (*at, "draw", number, key)
-                    raise source.failure(
-                        where, f"expected an axis of the grid ({', '.join(axes) or 'none'}), found '{axis}'"
-                    )
-            if drawing.kind == "lines" and not axes:
-                raise source.failure((*at, "draw", number), "expected a grid to draw lines over; or kind: bars")
+            place = (*at, "draw", number)
+            for key, axis in (("x", drawing.x), ("lines", drawing.lines)):
+                if axis and axis not in panel.grid:
+                    known = ", ".join(panel.grid) or "none"
+                    raise source.failure((*place, key), f"expected an axis of the grid ({known}), found '{axis}'")
+            if drawing.kind == "lines" and not panel.grid:
+                raise source.failure(place, "expected a grid to draw lines over, or kind: bars")
 
 
 def _settings(experiment: Experiment) -> Iterator[tuple[tuple[str | int, ...], str, str]]:

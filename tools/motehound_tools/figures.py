@@ -425,6 +425,11 @@ AXIS_NAMES = {
     "sensor.loss": "share of readings lost",
     "radio.loss": "share of frames lost",
     "tracker.chi": "threshold, g/m²",
+    "tracker.particles": "particles",
+    "tracker.tolerance_m": "error tolerance, m",
+    "target.speed_mph": "speed, mph",
+    "network.density": "density",
+    "sensor.range_noise_m": "noise of a range, m",
 }
 
 

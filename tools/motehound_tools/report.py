@@ -6,14 +6,16 @@ import base64
 import html
 import json
 import math
+import re
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from . import figures, output
+from . import figures, output, sweep_figures
 from .failure import Failure
 from .figures import Picture
 from .output import Output, Sweep
+from .sweep_figures import Table
 
 MEANING = {
     "position_rmse_m": "root mean square error of the position, m",
@@ -142,20 +144,43 @@ def network_pictures(results: Output) -> list[Picture]:
     return [picture for picture in drawn if picture]
 
 
-def render(found: Output | Sweep) -> str:
-    first = found.outputs[0] if isinstance(found, Sweep) else found
-    environment = Environment(
+def environment() -> Environment:
+    return Environment(
         loader=PackageLoader("motehound_tools"),
         autoescape=select_autoescape(["html", "j2"]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+
+
+def render_sweeps(folders: list[Path]) -> str:
+    described = []
+    for folder in folders:
+        table = Table.read(folder)
+        said = table.experiment
+        described.append(
+            {
+                "name": folder.name,
+                "title": said.title or folder.name,
+                "description": said.description,
+                "scenario": said.scenario,
+                "settings": said.settings,
+                "runs": len(table.columns["seed"]),
+                "version": table.version,
+                "drawn": sweep_figures.pictures(table),
+            }
+        )
+    return environment().get_template("sweeps.html.j2").render(sweeps=described, as_image=as_image)
+
+
+def render(found: Output | Sweep) -> str:
+    first = found.outputs[0] if isinstance(found, Sweep) else found
     sweep = found if isinstance(found, Sweep) else None
     columns = [head for head in HEADLINES if math.isfinite(first.pooled(head[0]))]
     across = figures.sweep_picture(sweep) if sweep else None
     middle = sweep.outputs[len(sweep.outputs) // 2] if sweep else first
-    return environment.get_template("report.html.j2").render(
+    return environment().get_template("report.html.j2").render(
         name=str(first.summary.get("scenario", "motehound")),
         description=str(first.scenario.sections.get("description", "")) if first.scenario else "",
         version=str(first.summary.get("version", "unknown")),
@@ -180,9 +205,24 @@ def render(found: Output | Sweep) -> str:
     )
 
 
+def natural(folder: Path) -> list[str | int]:
+    """Figure 9 comes before figure 10."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", folder.name)]
+
+
+def sweeps_in(folder: Path) -> list[Path]:
+    """The folder itself if it is one of tools/sweep, else those in it."""
+    if not folder.is_dir() or (folder / "summary.json").exists():
+        return []
+    if (folder / "manifest.json").exists():
+        return [folder]
+    return sorted((child for child in folder.iterdir() if (child / "table.parquet").exists()), key=natural)
+
+
 def write(folder: Path, page: Path) -> None:
     """Render first, then put the page in place, so that a failure leaves no half of it."""
-    text = render(output.read(folder))
+    swept = sweeps_in(folder)
+    text = render_sweeps(swept) if swept else render(output.read(folder))
     part = page.with_name(page.name + ".part")
     try:
         part.write_text(text, encoding="utf-8")

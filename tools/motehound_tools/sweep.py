@@ -216,7 +216,7 @@ def run(
         manifest = {
             "begun": before["begun"] if before else now(),
             "ended": None,
-            "experiment": wanted.model_dump(),
+            "experiment": wanted.model_dump(exclude_defaults=True),
             "recipe": made_of,
             "runs": [],
         }

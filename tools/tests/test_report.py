@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from conftest import write_output
 
-from motehound_tools import command, figures, metrics, output
+from motehound_tools import command, experiment, figures, metrics, output, sweep, sweep_figures
+from motehound_tools.failure import Failure
 from motehound_tools.report import number
 
 TOOLS = Path(__file__).resolve().parents[1]
@@ -140,6 +141,101 @@ def test_sweep_of_the_command_names_folders_by_value(tmp_path: Path) -> None:
     found = output.read(tmp_path)
     assert isinstance(found, output.Sweep)
     assert found.key == "network.nodes" and found.values == [640.0, 1280.0, 1920.0]
+
+
+@pytest.fixture
+def swept(tmp_path: Path) -> Path:
+    """A sweep of made-up runs: error = speed + noise of the seed, twice that for the second series."""
+    program = tmp_path / "program"
+    program.write_text(
+        f"""#!{sys.executable}
+import sys, pathlib
+if sys.argv[1] == "--version":
+    print("made up 1")
+elif sys.argv[1] == "list":
+    print("source.speed_mps 1 a number 0 to 100")
+    print("tracker.name luo one of luo/diffusion")
+else:
+    given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
+    settings = dict(word.split("=") for word in sys.argv if "=" in word)
+    error = (float(settings["source.speed_mps"]) + int(sys.argv[sys.argv.index("--seed") + 1])) * (2 if settings["tracker.name"] == "luo" else 1)
+    out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
+    out.mkdir()
+    (out / "runs.csv").write_text(f"run,seed,position_rmse_m,least_m,nothing\\n0,0,{{error}},1,\\n")
+"""
+    )
+    program.chmod(0o755)
+    (tmp_path / "speed.yaml").write_text(
+        """
+title: Error against speed
+scenario: luo_exp1
+seeds: 3
+grid: {source.speed_mps: [1, 4, 9]}
+series: [{name: Luo, settings: {tracker.name: luo}}, {name: default, settings: {tracker.name: diffusion}}]
+draw:
+  - title: lines
+    label: RMSE, m
+    y: [{metric: position_rmse_m}]
+    bounds: [{name: least, metric: least_m, scale: 0.5}]
+  - {title: bars, kind: bars, y: [{metric: position_rmse_m}]}
+  - {title: nothing to draw, y: [{metric: nothing}]}
+"""
+    )
+    return sweep.run(tmp_path / "speed.yaml", tmp_path / "sweeps" / "speed", named_program=str(program))
+
+
+def test_figures_of_a_sweep(swept: Path) -> None:
+    table = sweep_figures.Table.read(swept)
+    over_speed, over_series = sweep_figures.pictures(table)
+    assert over_speed.head == ["speed of the source, m/s", "Luo", "default", "least"]
+    # seeds 0, 1, 2: the mean is one more than the speed, the standard deviation one
+    assert over_speed.numbers == [
+        ["1", "4 ± 2", "2 ± 1", "0.5 ± 0"],
+        ["4", "10 ± 2", "5 ± 1", "0.5 ± 0"],
+        ["9", "20 ± 2", "10 ± 1", "0.5 ± 0"],
+    ]
+    assert over_series.numbers == [["Luo", "11.33 ± 2"], ["default", "5.667 ± 1"]]
+    assert "over every speed of the source" in over_series.picture.caption
+
+
+def test_page_of_a_sweep_of_an_experiment(swept: Path) -> None:
+    for folder in (swept, swept.parent):
+        done = call("report", folder)
+        assert done.returncode == 0, done.stderr
+        page = Page((folder / "report.html").read_text(encoding="utf-8"))
+        assert [str(image["alt"]).partition(".")[0] for image in page.images] == ["lines", "bars"]
+        assert "Error against speed" in page.text and "10 ± 2" in page.text
+
+
+def test_sweep_without_its_table(swept: Path) -> None:
+    (swept / "table.parquet").unlink()
+    done = call("report", swept)
+    assert done.returncode == 1 and "expected the manifest.json and table.parquet of a sweep" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_drawing_of_an_unknown_metric(swept: Path) -> None:
+    manifest = json.loads((swept / "manifest.json").read_text())
+    manifest["experiment"]["draw"] = [{"y": [{"metric": "rmse"}]}]
+    (swept / "manifest.json").write_text(json.dumps(manifest))
+    done = call("report", swept)
+    assert done.returncode == 1 and "no metric `rmse`" in done.stderr
+
+
+EXPERIMENTS = sorted((TOOLS.parent / "experiments").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("file", EXPERIMENTS, ids=lambda file: file.stem)
+def test_experiments_of_this_repository(file: Path) -> None:
+    try:
+        program = command.find(os.environ.get("MOTEHOUND"))
+    except Failure as failure:
+        pytest.skip(str(failure))
+    wanted = experiment.read(file, command.keys(program))
+    metrics_known = command.metrics(program)
+    for panel in experiment.panels(wanted):
+        for drawing in panel.draw:
+            assert {quantity.metric for quantity in (*drawing.y, *drawing.bounds)} <= metrics_known
 
 
 def test_page_without_scenario_and_truth(folder: Path) -> None:
