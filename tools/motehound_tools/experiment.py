@@ -115,15 +115,18 @@ class Point:
 
 def panels(experiment: Experiment) -> list[Panel]:
     """Each with all that it takes over from the experiment; one without a title where the experiment has none."""
-    usual = [Drawing(label="RMSE, m", y=[Quantity(metric="position_rmse_m")], kind="lines" if experiment.grid else "bars")]
+    usual = [
+        Drawing(label="RMSE, m", y=[Quantity(metric="position_rmse_m")], kind="lines" if experiment.grid else "bars")
+    ]
     return [
-        Panel(
-            title=panel.title,
-            settings=experiment.settings | panel.settings,
-            series=panel.series or experiment.series or [Series(name="")],
-            grid=panel.grid or experiment.grid,
-            seeds=panel.seeds or experiment.seeds,
-            draw=panel.draw or experiment.draw or usual,
+        panel.model_copy(
+            update={
+                "settings": experiment.settings | panel.settings,
+                "series": panel.series or experiment.series or [Series(name="")],
+                "grid": panel.grid or experiment.grid,
+                "seeds": panel.seeds or experiment.seeds,
+                "draw": panel.draw or experiment.draw or usual,
+            }
         )
         for panel in experiment.panels or [Panel()]
     ]

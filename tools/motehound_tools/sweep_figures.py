@@ -51,7 +51,9 @@ class Table:
     def by_seed(self, rows: list[int], quantity: Quantity) -> Array:
         """The quantity of each seed, the mean over its rows; empty where the metric does not apply."""
         if quantity.metric not in self.columns:
-            raise Failure(f"{self.folder / 'table.parquet'}: no metric `{quantity.metric}`; `motehound list --metrics` names them")
+            raise Failure(
+                f"{self.folder / 'table.parquet'}: no metric `{quantity.metric}`; `motehound list --metrics` names them"
+            )
         of_seed: dict[float | str | None, list[float]] = {}
         for row in rows:
             value = self.columns[quantity.metric][row]
@@ -99,7 +101,9 @@ def lines(table: Table, panel: Panel, drawing: Drawing) -> list[Line]:
     of = [drawing.lines] if drawing.lines else []
     values = panel.grid[drawing.lines] if drawing.lines else [""]
     names = [series.name for series in panel.series] or [""]
-    for (s, series), (v, value), (q, quantity) in itertools.product(enumerate(names), enumerate(values), enumerate(drawing.y)):
+    for (s, series), (v, value), (q, quantity) in itertools.product(
+        enumerate(names), enumerate(values), enumerate(drawing.y)
+    ):
         fixed = {"series": series} | dict.fromkeys(of, value)
         points = [table.by_seed(table.rows(panel, **fixed, **{x: at}), quantity) for at in panel.grid[x]]
         said = [
@@ -135,7 +139,15 @@ def draw_lines(axes: Axes, found: list[Line], x: str, log: bool) -> None:
         look = {"color": COLOURS[colour % len(COLOURS)], "linestyle": STYLES[style % len(STYLES)], "marker": marker}
         face = look["color"] if style == 0 else "white"
         axes.errorbar(
-            at, line.mean, line.sd, **look, markersize=5, markerfacecolor=face, capsize=2.5, linewidth=1.6, label=line.name
+            at,
+            line.mean,
+            line.sd,
+            **look,
+            markersize=5,
+            markerfacecolor=face,
+            capsize=2.5,
+            linewidth=1.6,
+            label=line.name,
         )
     if (at > 0).all() and at.max() / at.min() > 20.0:
         plain_log(axes, "x")
