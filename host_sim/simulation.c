@@ -1,5 +1,6 @@
 #include "simulation.h"
 
+#include "ideal/ideal.h"
 #include "network.h"
 #include "world/field.h"
 #include "world/ranging.h"
@@ -254,6 +255,9 @@ int simulation_run_on(const struct host_provider *hosts, const struct scenario *
                       const struct observer *observer, const volatile sig_atomic_t *stop,
                       struct simulation_counters *counters, char *error, size_t error_size)
 {
+    if (scenario->network.ideal) {
+        return ideal_run(scenario, seed, observer, stop, counters, error, error_size);
+    }
     struct run run = {.observer = observer};
     int result = bring_up(&run, hosts, scenario, seed, error, error_size);
     if (result == 0) {

@@ -168,6 +168,38 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
     return -1;
 }
 
+void tracker_seed(struct tracker_choice *choice, uint32_t seed)
+{
+    if (choice->tracker == &mh_tracker_pftl) {
+        choice->config.pftl.seed = seed;
+    } else if (choice->tracker == &mh_tracker_msl) {
+        choice->config.msl.seed = seed;
+    }
+}
+
+uint32_t tracker_draws(const struct tracker_choice *choice, const void *state)
+{
+    if (choice->tracker == &mh_tracker_pftl) {
+        return ((const struct mh_pftl *)state)->draws;
+    }
+    return choice->tracker == &mh_tracker_msl ? ((const struct mh_msl *)state)->draws : 0;
+}
+
+struct mh_election_config election_config_of(const struct scenario *scenario)
+{
+    struct mh_election_config config;
+    mh_election_config_default(&config, scenario->protocol.election);
+    if (scenario->protocol.members > 0) {
+        config.members = (uint8_t)scenario->protocol.members;
+    }
+    config.horizon = (uint8_t)scenario->protocol.horizon;
+    config.least_answers = (uint8_t)scenario->protocol.least_answers;
+    config.sensing_range_m = (mh_real)scenario->sensor.range_m;
+    config.radio_range_m = (mh_real)radio_nominal_range_m(scenario);
+    config.interval = (mh_tick)lround(scenario->sensor.interval_s * MH_TICKS_PER_S);
+    return config;
+}
+
 static void set_up_collection(struct protocol_choice *choice, const struct scenario *scenario)
 {
     const uint32_t range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);

@@ -6,6 +6,7 @@
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
 #include "motehound/direct.h"
+#include "motehound/election.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/msl.h"
@@ -44,6 +45,15 @@ struct protocol_choice {
  * `error` (no such tracker: names those there are). */
 int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
                    char *error, size_t error_size);
+
+/* Its random numbers, if it has any, come from `seed`. */
+void tracker_seed(struct tracker_choice *choice, uint32_t seed);
+
+/* Particles that the tracker in `state` has drawn since it was begun; 0 for one that has none. */
+uint32_t tracker_draws(const struct tracker_choice *choice, const void *state);
+
+/* How clusters are chosen, as scenario->protocol says. */
+struct mh_election_config election_config_of(const struct scenario *scenario);
 
 /* Name and meaning of tracker `i`, from 0; false after the last. */
 bool tracker_describe(size_t i, const char **name, const char **meaning);

@@ -1,10 +1,15 @@
 #include "energy/account.h"
 
+/* How often particle filters draw each particle in a step, on average: motes do not tell. */
+#define DRAWS_PER_PARTICLE 4.3
+
 int account_open(struct account *account, const struct scenario *scenario, const uint32_t *order, uint32_t motes,
                  uint32_t sink)
 {
     const struct energy_profile *profile = energy_profile_find(scenario->energy.profile);
-    *account = (struct account){.open = profile != NULL, .tracker = scenario->tracker.name};
+    *account = (struct account){.open = profile != NULL,
+                                .tracker = scenario->tracker.name,
+                                .draws = (uint32_t)(DRAWS_PER_PARTICLE * (double)scenario->tracker.particles)};
     if (!account->open) {
         return 0;
     }
@@ -90,7 +95,8 @@ void account_frame(struct account *account, uint32_t mote, sim_time time, enum e
 void account_step(struct account *account, uint32_t mote, sim_time time, int measurements)
 {
     if (account->open) {
-        const uint64_t takes = energy_tracker_us(account->ledger.profile, account->tracker, measurements);
+        const uint64_t takes =
+            energy_tracker_us(account->ledger.profile, account->tracker, measurements, account->draws);
         energy_charge(&account->ledger, mote, time, ENERGY_CPU, ENERGY_LOCALISATION, takes);
     }
 }

@@ -12,6 +12,7 @@ struct account {
     bool open;                                /* there is a profile */
     uint64_t sensing_us, sample_us, frame_us; /* what work takes */
     const char *tracker;
+    uint32_t draws; /* of particles in one of its steps, if it has any */
 };
 
 /* All radios listen from time 0. `order`: as in struct energy_config. Returns 0, or -1 if there is no memory (nothing to close). */

@@ -32,7 +32,7 @@ double energy_profile_transmit(const struct energy_profile *profile, double dbm)
 uint64_t energy_sensing_us(void);                                /* the sensor, for one sample */
 uint64_t energy_sample_us(const struct energy_profile *profile); /* the processor, for that sample */
 uint64_t energy_frame_us(const struct energy_profile *profile);  /* ... for a frame received or sent */
-/* ... for a step of the tracker named, with so many measurements; 0 for a name that no row has. */
-uint64_t energy_tracker_us(const struct energy_profile *profile, const char *tracker, int measurements);
+/* ... for a step of the tracker named, with so many measurements and particles drawn; 0 for a name that no row has. */
+uint64_t energy_tracker_us(const struct energy_profile *profile, const char *tracker, int measurements, uint32_t draws);
 
 #endif

@@ -18,8 +18,9 @@
  *   scm_set   The same, as soon as another set of nodes detects.
  * He and Hou, "Tracking targets with quality in wireless sensor networks", ICNP 2005:
  *   rho       As sac, ordered by how far the target still goes inside the node's disc from P_1 on, straight ahead (at rest: how far it can
- *             go in any direction). The head is to be in the sector of +- 45 degrees ahead of the stored position and within the
- *             sensing range of the present head; failing that in the sector; failing that anywhere.
+ *             go in any direction). The head is to be
+ *             within the sensing range of the present head and in the sector of +- 45 degrees ahead of the stored position; failing that
+ *             within that range; failing that anywhere.
  * Remaining ties go to the lowest identifier.
  *
  * Cost: linear in the candidates, times the horizon for sac and sacx, when a new cluster is due; else linear in the cluster. */

@@ -179,7 +179,7 @@ static void add(struct list *list, const struct mh_member *member, const struct 
     struct mh_cluster *cluster = list->cluster;
     uint8_t i = cluster->count;
     if (i == list->limit) {
-        if (!better(rank, &list->ranks[i - 1])) {
+        if (i == 0 || !better(rank, &list->ranks[i - 1])) {
             return;
         }
         i--;
@@ -323,17 +323,18 @@ static bool due_ahead(const struct mh_election_config *config, const struct way 
     return effective < config->least_answers && replacements > effective;
 }
 
-/* rho: how well the candidate's place suits a head: 2, in the sector ahead and near the present head; 1, in the sector; 0. */
+/* rho: how well the candidate's place suits a head: 2, near the present head and in the sector ahead; 1, near it; 0. */
 static uint8_t suits(const struct way *way, const struct mh_candidate *candidate, const struct mh_place *head)
 {
-    const struct mh_vec2 d = from_prediction(way, 0.0f, &candidate->place);
-    const mh_real ahead = d.x * way->step.x + d.y * way->step.y;
-    const bool in_sector = !(way->step_length > 0) || (ahead >= 0 && 2.0f * mh_squared(ahead / way->step_length) >=
-                                                                         square_of(d)); /* cos2 of 45 degrees is 1/2 */
-    if (!in_sector) {
+    if (!mh_place_within(&candidate->place, head, way->sensing_mm)) {
         return 0;
     }
-    return mh_place_within(&candidate->place, head, way->sensing_mm) ? 2 : 1;
+    const struct mh_vec2 d = from_prediction(way, 0.0f, &candidate->place);
+    const mh_real ahead = d.x * way->step.x + d.y * way->step.y;
+    const bool in_sector =
+        !(way->step_length > 0) ||
+        (ahead >= 0 && 2.0f * mh_squared(ahead / way->step_length) >= square_of(d)); /* cos2 of 45 degrees is 1/2 */
+    return in_sector ? 2 : 1;
 }
 
 static enum mh_status elect_ahead(const struct mh_election_config *config, const struct way *way,

@@ -346,10 +346,10 @@ static void profiles_make_sense(void)
         TEST_ASSERT_TRUE(energy_sample_us(profile) == 500); /* of an ATmega128 at 7.3728 MHz */
         const char *name, *meaning;
         for (size_t t = 0; tracker_describe(t, &name, &meaning); t++) {
-            TEST_ASSERT_TRUE_MESSAGE(energy_tracker_us(profile, name, 5) > 0, name);
+            TEST_ASSERT_TRUE_MESSAGE(energy_tracker_us(profile, name, 5, 200) > 0, name);
         }
-        NEAR(64989, (double)energy_tracker_us(profile, "luo", 20)); /* docs/costs.md */
-        NEAR(0, (double)energy_tracker_us(profile, "no such tracker", 20));
+        NEAR(64989, (double)energy_tracker_us(profile, "luo", 20, 0)); /* docs/costs.md */
+        NEAR(0, (double)energy_tracker_us(profile, "no such tracker", 20, 200));
     }
 }
 
