@@ -83,7 +83,10 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         return -1;
     }
     mote_kit_complete(kit, scenario, 0);
-    if (radio_config_of(scenario, scenario->radio.range_m).profile.contention) {
+    if (kit->protocol.in_turns) {
+        kit->head.window = kit->protocol.config.cluster.window;
+        kit->head.tolerance = kit->head.interval / 4; /* who is asked samples when he hears it */
+    } else if (radio_config_of(scenario, scenario->radio.range_m).profile.contention) {
         kit->sensor.report_spread = kit->head.window / 4 * 3; /* the rest is for the way */
     }
     keep_time(kit, scenario);
@@ -113,6 +116,10 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     const struct scenario_field field = scenario_field(scenario);
     roster->sink_x_m = field.sink_x_m;
     roster->sink_y_m = field.sink_y_m;
+    if (roster->kit.protocol.protocol == &mh_protocol_cluster) {
+        roster->kit.protocol.config.cluster.sink = roster->sink_id;
+        roster->kit.protocol.config.cluster.sink_place = place_from_metres(field.sink_x_m, field.sink_y_m, 0);
+    }
     return 0;
 }
 

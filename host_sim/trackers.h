@@ -3,6 +3,7 @@
 #define MOTEHOUND_SIM_TRACKERS_H
 
 #include "motehound/centroid.h"
+#include "motehound/cluster.h"
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
 #include "motehound/direct.h"
@@ -37,6 +38,7 @@ struct protocol_choice {
         struct mh_collection_config collection;
         struct mh_geographic_collection_config geographic;
         struct mh_direct_config direct;
+        struct mh_cluster_config cluster; /* but for the sink, which the roster knows */
         struct chatter_config chatter;
     } config;
 };
