@@ -86,7 +86,7 @@ class Writer:
 
     def track_t(self, track: Any) -> None:
         self.at(track.time_s)
-        branch = f"track_{track.target}"
+        branch = f"track_{track.target}" if track.head != messages.SINK else f"sink_{track.target}"
         place = (track.x_m, track.y_m, 0.0)
         self.log(track.run, branch, self.rerun.Points3D([place], radii=SOURCE_M, colors=TRACK))
         self.log(track.run, f"{branch}/ellipse", self.rerun.LineStrips3D([circle(track)], colors=TRACK))

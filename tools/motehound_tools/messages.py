@@ -16,6 +16,7 @@ from .command import ROOT
 from .failure import Failure
 
 FINGERPRINT_BYTES = 8
+SINK = -1  # the head of a motehound.track_t that is what the sink of clusters has
 
 
 class Broken(Exception):

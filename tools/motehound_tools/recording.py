@@ -75,6 +75,7 @@ class Run:
         self.track = Table(
             [("target", "i4"), *((name, "f8") for name in ("x", "y", "xx", "xy", "yy", "true_x", "true_y", "error"))]
         )
+        self.sink = Table([("target", "i4"), ("x", "f8"), ("y", "f8")])  # what the sink of clusters has
         self.motes = Table([("node", "i4"), ("energy", "f8"), ("battery", "f8"), ("alive", "?"), ("clock_error", "f8")])
 
 
@@ -131,6 +132,9 @@ class Recording:
         run.truth.append((truth.time_s, truth.present, truth.x_m, truth.y_m))
 
     def _track_t(self, run: Run, track: Any) -> None:
+        if track.head == messages.SINK:
+            run.sink.append((track.time_s, track.target, track.x_m, track.y_m))
+            return
         true = (track.true_x_m, track.true_y_m) if track.true_known else (math.nan, math.nan)
         error = math.hypot(track.x_m - true[0], track.y_m - true[1])
         covariance = (track.cov_xx_m2, track.cov_xy_m2, track.cov_yy_m2)

@@ -125,6 +125,12 @@ def test_track_and_truth_at_a_time() -> None:
     assert scene.truth(run, 25.0)[1] is None
 
 
+def test_what_the_sink_has_is_no_estimate_of_a_head() -> None:
+    run = taken([("TRACK", track(1.0, 5.0, 6.0, head=7)), ("SINK", track(1.0, 4.0, 6.5, head=-1))]).runs[0]
+    assert run.track.snapshot()["x"].tolist() == [5.0]
+    assert (run.sink.snapshot()["x"].tolist(), run.sink.snapshot()["y"].tolist()) == ([4.0], [6.5])
+
+
 def test_timeline_counts_every_frame() -> None:
     run = taken(small_run()).runs[0]
     lines = scene.timeline(run)
