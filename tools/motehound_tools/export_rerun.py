@@ -19,6 +19,7 @@ MOTE_M, SOURCE_M = 0.3, 0.6
 QUIET, TRUTH, TRACK = (140, 148, 160), (0, 158, 115), (0, 114, 178)
 KINDS = {"beacon": (140, 148, 160), "report": (0, 114, 178), "request": (230, 159, 0)}
 OTHER = (204, 121, 167)
+CLUSTER = (230, 159, 0)
 EMPTY, FULL = np.array([68, 1, 84]), np.array([253, 231, 37])  # the ends of viridis
 DEAD = (213, 94, 0)
 
@@ -93,6 +94,14 @@ class Writer:
         if track.true_known:
             error = math.hypot(track.x_m - track.true_x_m, track.y_m - track.true_y_m)
             self.log(track.run, f"{branch}/error_m", self.rerun.Scalars(error))
+
+    def cluster_t(self, cluster: Any) -> None:
+        self.at(cluster.time_s)
+        places = self.places[cluster.run]
+        asked = [places[node] for node in cluster.members if node in places]
+        head = places.get(cluster.head)
+        spokes = [np.array((head, place)) for place in asked] if head else []
+        self.log(cluster.run, "cluster", self.rerun.LineStrips3D(spokes, colors=CLUSTER))
 
     def frame_t(self, frame: Any) -> None:
         places = self.places[frame.run]

@@ -75,7 +75,9 @@ class Run:
         self.track = Table(
             [("target", "i4"), *((name, "f8") for name in ("x", "y", "xx", "xy", "yy", "true_x", "true_y", "error"))]
         )
-        self.sink = Table([("target", "i4"), ("x", "f8"), ("y", "f8")])  # what the sink of clusters has
+        self.sink = Table([("x", "f8"), ("y", "f8"), ("error", "f8")])  # what the sink has of the target
+        self.clusters = Table([("head", "i4"), ("members", "i4")])  # the second: which entry of the next
+        self.members: list[tuple[int, ...]] = []
         self.motes = Table([("node", "i4"), ("energy", "f8"), ("battery", "f8"), ("alive", "?"), ("clock_error", "f8")])
 
 
@@ -132,13 +134,17 @@ class Recording:
         run.truth.append((truth.time_s, truth.present, truth.x_m, truth.y_m))
 
     def _track_t(self, run: Run, track: Any) -> None:
-        if track.head == messages.SINK:
-            run.sink.append((track.time_s, track.target, track.x_m, track.y_m))
-            return
         true = (track.true_x_m, track.true_y_m) if track.true_known else (math.nan, math.nan)
         error = math.hypot(track.x_m - true[0], track.y_m - true[1])
+        if track.head == messages.SINK:
+            run.sink.append((track.time_s, track.x_m, track.y_m, error))
+            return
         covariance = (track.cov_xx_m2, track.cov_xy_m2, track.cov_yy_m2)
         run.track.append((track.time_s, track.target, track.x_m, track.y_m, *covariance, *true, error))
+
+    def _cluster_t(self, run: Run, cluster: Any) -> None:
+        run.members.append(tuple(cluster.members))
+        run.clusters.append((cluster.time_s, cluster.head, len(run.members) - 1))
 
     def _mote_t(self, run: Run, mote: Any) -> None:
         run.motes.append((mote.time_s, mote.node, mote.energy_mj, mote.battery_left, mote.alive, mote.clock_error_ms))

@@ -64,6 +64,19 @@ def small_run(run: int = 0, nodes: int = 9, seconds: int = 20, seed: int = 0) ->
     return found
 
 
+def clustered_run() -> list[tuple[str, Any]]:
+    """The same, followed by two clusters: mote 4 asks 1 and 3 from the start, 8 asks 5 and 7 from 10 s on."""
+    found = small_run()
+    for second in range(2, 20):
+        found.append(("SINK", track(float(second), second - 1.0, second - 1.0, head=-1)))
+    for time, head, members in ((0.0, 4, [1, 3]), (10.0, 8, [5, 7])):
+        found.append(
+            ("CLUSTER", message("motehound.cluster_t", time_s=time, head=head, is_new=True, count=2, members=members))
+        )
+    begin, rest = found[:10], found[10:]
+    return begin + sorted(rest, key=lambda told: told[1].time_s)
+
+
 def write_log(path: Path, told: list[tuple[str, Any]]) -> Path:
     log = lcm.EventLog(str(path), "w", overwrite=True)
     last = 0

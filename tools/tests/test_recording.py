@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from logs import frame, message, small_run, track, write_log
+from logs import clustered_run, frame, message, small_run, track, write_log
 
 from motehound_tools import recording
 from motehound_tools.event_log import EventLog
@@ -129,6 +129,21 @@ def test_what_the_sink_has_is_no_estimate_of_a_head() -> None:
     run = taken([("TRACK", track(1.0, 5.0, 6.0, head=7)), ("SINK", track(1.0, 4.0, 6.5, head=-1))]).runs[0]
     assert run.track.snapshot()["x"].tolist() == [5.0]
     assert (run.sink.snapshot()["x"].tolist(), run.sink.snapshot()["y"].tolist()) == ([4.0], [6.5])
+
+
+def test_clusters_and_what_the_sink_has_at_a_time() -> None:
+    run = taken(clustered_run()).runs[0]
+    motes = scene.Motes(run)
+    assert len(run.track) == 20 and len(run.sink) == 18  # what the sink has is not a track of its own
+    first, second = scene.cluster(run, motes, 9.9), scene.cluster(run, motes, 10.0)
+    assert [first["head"][axis].tolist() for axis in "xy"] == [[10.0], [10.0]]
+    assert [second["head"][axis].tolist() for axis in "xy"] == [[20.0], [20.0]]
+    assert [first["members"][axis].tolist() for axis in "xy"] == [[10.0, 0.0], [0.0, 10.0]]
+    assert [spoke.tolist() for spoke in first["spokes"]["xs"]] == [[10.0, 10.0], [10.0, 0.0]]
+    assert not len(scene.cluster(taken(small_run()).runs[0], motes, 5.0)["head"]["x"])
+    assert not len(scene.sink_view(run, 1.9)["sink"]["x"])
+    seen = scene.sink_view(run, 7.5)
+    assert seen["sink"]["x"].tolist() == [6.0] and len(seen["sink_path"]["x"]) == 6
 
 
 def test_timeline_counts_every_frame() -> None:

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import Browser
-from logs import program, simulated, small_run, write_log
+from logs import clustered_run, program, simulated, small_run, write_log
 from PIL import Image
 
-from motehound_tools.view.colours import MAP, TRACK
+from motehound_tools.view.colours import CLUSTER, MAP, SINK, TRACK
 
 TOOLS = Path(__file__).resolve().parents[1]
 OWN_NETWORK = "MOTEHOUND_OWN_NETWORK"
@@ -187,6 +187,17 @@ def test_mouse_hovers_and_zooms_and_the_layers_agree(browser: Browser, served: S
     for shift in (3, 0):
         browser.do("Input.dispatchMouseEvent", type="mouseMoved", x=x + shift, y=y)
     browser.until("model('motes').inspected.indices.length > 0", 5)
+
+
+@needs_browser
+def test_clusters_are_shown(browser: Browser, tmp_path: Path) -> None:
+    with Served(str(write_log(tmp_path / "events.lcm", clustered_run()))) as one:
+        opened(browser, f"{one.url}?time=12&play=0")
+        browser.until("document.title.includes('12.0 s')")
+        assert [length(browser, name) for name in ("head", "members", "spokes", "sink")] == [1, 2, 2, 1]
+        shot = browser.screenshot("clusters.png")
+        assert pixels(shot, CLUSTER) > 100 and pixels(shot, SINK) > 50
+        assert "members now" in browser.evaluate("model('counters').text")
 
 
 @needs_browser

@@ -8,7 +8,7 @@ from bokeh.palettes import Viridis256
 
 # IBM's colour-blind safe palette
 BLUE, VIOLET, MAGENTA, ORANGE, AMBER, GREY = "#648fff", "#b07cf7", "#dc267f", "#fe6100", "#ffb000", "#9aa7b8"
-TRACK, TRUTH, DEAD = MAGENTA, "#8a97a8", ORANGE
+TRACK, TRUTH, DEAD, CLUSTER, SINK = MAGENTA, "#8a97a8", ORANGE, AMBER, BLUE
 INK, FAINT = "#8a97a8", "rgba(138, 151, 168, 0.18)"
 MAP = Viridis256[36:240]  # without the ends, which one of the two backgrounds would swallow
 KINDS = {
@@ -16,6 +16,10 @@ KINDS = {
     "route": BLUE,
     "face": ORANGE,
     "request": AMBER,
+    "ask": AMBER,
+    "answer": BLUE,
+    "alert": ORANGE,
+    "position": MAGENTA,
     "sync": VIOLET,
     "beacon": GREY,
     "hello": GREY,

@@ -22,6 +22,13 @@ def figures(run: Run, motes: Motes, time: float) -> list[tuple[str, str]]:
     if len(errors):
         found.append(("error now", f"{errors[-1]:.2f} m"))
         found.append(("error, RMS so far", f"{math.sqrt(np.mean(errors**2)):.2f} m"))
+    kept = run.sink.until(time)["error"][-1:]
+    if np.isfinite(kept).any():
+        found.append(("error at the sink now", f"{kept[0]:.2f} m"))
+    clusters = run.clusters.until(time)
+    if len(clusters):
+        found.append(("clusters", f"{len(clusters):,}"))
+        found.append(("members now", f"{len(run.members[clusters['members'][-1]]):,}"))
     if len(run.motes):
         found.append(("energy spent", f"{np.nansum(motes.energy) / 1000.0:,.2f} J"))
     clock_errors = np.abs(motes.clock_error[np.isfinite(motes.clock_error)])

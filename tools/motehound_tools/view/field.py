@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from ..recording import Run
 from . import scene
-from .colours import DEAD, INK, MAP, TRACK, TRUTH, ink
+from .colours import CLUSTER, DEAD, INK, MAP, SINK, TRACK, TRUTH, ink
 
 SHADES = {
     "sent": ("frames sent", "frames sent"),
@@ -27,6 +27,7 @@ TIPS = [
     ("energy spent", "@energy{0,0.0} mJ"),
     ("clock error", "@clock_error{0.000} ms"),
 ]
+AWAKE, ASLEEP = 0.75, 0.3  # how opaque a mote is; with clusters, those that nobody asks sleep
 MARGINS = {
     "min_border_left": 65,
     "min_border_right": 85,
@@ -74,7 +75,7 @@ class Field:
             color={"field": "value", "transform": self.mapper},
             line_color="rgba(60, 70, 85, 0.35)",
             line_width=0.5,
-            alpha=0.75,
+            alpha=AWAKE,
             tags=["motes"],
         )
         self.mote = motes.glyph
@@ -131,6 +132,17 @@ class Field:
         truth = {"line_color": TRUTH, "tags": ["truth"]}
         plot.line("x", "y", source=self._source("truth", "x y"), line_width=5, line_alpha=0.55, **truth)
         plot.scatter("x", "y", source=self._source("here", "x y"), size=18, fill_color=None, line_width=3, **truth)
+        cluster = {"line_color": CLUSTER, "tags": ["cluster"]}
+        plot.multi_line("xs", "ys", source=self._source("spokes", "xs ys"), line_alpha=0.6, line_width=1.2, **cluster)
+        members = self._source("members", "x y")
+        plot.scatter("x", "y", source=members, size=9, fill_color=CLUSTER, fill_alpha=0.5, line_width=1.5, **cluster)
+        head = self._source("head", "x y")
+        plot.scatter("x", "y", source=head, size=15, marker="diamond", fill_color=CLUSTER, line_width=2, **cluster)
+        sink = {"line_color": SINK, "tags": ["sink"]}
+        path = self._source("sink_path", "x y")
+        plot.line("x", "y", source=path, line_width=1.5, line_dash=[5, 3], **sink)
+        place = self._source("sink", "x y")
+        plot.scatter("x", "y", source=place, size=13, marker="cross", line_width=3, **sink)
         track = {"fill_color": TRACK, "line_width": 1.5, "tags": ["track"]}
         paths = self._source("paths", "xs ys")
         plot.multi_line("xs", "ys", source=paths, line_color=TRACK, line_width=2, tags=["track"])
@@ -164,7 +176,9 @@ class Field:
         frames = scene.frames_in_air(run, motes, time, linger, colours)
         path, here = scene.truth(run, time)
         now = {"x": [here[0]], "y": [here[1]]} if here else {"x": [], "y": []}
-        for name, data in (frames | scene.track(run, time) | {"truth": path, "here": now}).items():
+        self.mote.fill_alpha = ASLEEP if len(run.clusters) else AWAKE
+        layers = frames | scene.track(run, time) | scene.cluster(run, motes, time) | scene.sink_view(run, time)
+        for name, data in (layers | {"truth": path, "here": now}).items():
             if _rows(data) or _rows(self.sources[name].data):
                 self.sources[name].data = data
         return _rows(frames["arcs"]) + _rows(frames["rings"])

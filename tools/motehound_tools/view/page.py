@@ -14,7 +14,7 @@ from jinja2 import Environment, PackageLoader
 
 from ..recording import Recording, Run
 from . import counters, scene
-from .colours import DEAD, GREY, KINDS, MAP, TRACK, TRUTH, colour_of
+from .colours import CLUSTER, DEAD, GREY, KINDS, MAP, SINK, TRACK, TRUTH, colour_of
 from .field import SHADES, Field
 from .timeline import Timeline
 from .widgets import Widgets
@@ -27,6 +27,8 @@ SWATCHES = {
     "broadcasts": GREY,
     "truth": TRUTH,
     "track": TRACK,
+    "cluster": CLUSTER,
+    "sink": SINK,
 }
 TICK_S = 0.05
 SLOW_TICKS = 6  # what is read rather than watched changes every so many ticks
@@ -180,7 +182,7 @@ class Page:
         slider.end = max(run.end_s, 1.0)
         if self.clock - self.touched > HANDS_OFF_S:
             self.set("slider", round(min(self.time, slider.end), 2))
-        if self.new("moving", (self.time, len(run.frames), len(run.track))):
+        if self.new("moving", (self.time, len(run.frames), len(run.track), len(run.sink), len(run.clusters))):
             colours = np.array([colour_of(kind) for kind in self.recording.kinds] or [GREY])
             self.on_screen = self.field.move(run, self.motes, self.time, LINGER_S * speed, colours)
             self.timeline.cursor.location = self.time

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 from ..recording import Run
 
 FRAMES_MAX = 1500  # drawn at once; the newest ones
+TRAIL_S = 600.0  # of the paths behind the target
 STALE = 5  # sampling intervals after which an estimate is no longer where the source is
 ELLIPSE = np.linspace(0.0, 2.0 * np.pi, 49)
 ELLIPSE_SD = 2.0
@@ -102,7 +103,7 @@ def frames_in_air(
 
 def truth(run: Run, time: float) -> tuple[dict[str, np.ndarray], tuple[float, float] | None]:
     """The path so far and where the source is now, between two samples on the line that joins them."""
-    past = run.truth.until(time)
+    past = run.truth.between(time - TRAIL_S, time)
     past = past[past["present"]]
     path = {"x": past["x"], "y": past["y"]}
     if not len(past):
@@ -121,7 +122,7 @@ def truth(run: Run, time: float) -> tuple[dict[str, np.ndarray], tuple[float, fl
 
 def track(run: Run, time: float) -> dict[str, dict[str, list]]:
     """Of every target the path of the estimates, the newest of them and its ellipse of two standard deviations."""
-    rows = run.track.until(time)
+    rows = run.track.between(time - TRAIL_S, time)
     paths: dict[str, list] = {"xs": [], "ys": []}
     ellipses: dict[str, list] = {"xs": [], "ys": []}
     heads: dict[str, list] = {"x": [], "y": [], "error": []}
@@ -145,6 +146,30 @@ def track(run: Run, time: float) -> dict[str, dict[str, list]]:
             ellipses["xs"].append(newest["x"] + x)
             ellipses["ys"].append(newest["y"] + y)
     return {"paths": paths, "ellipses": ellipses, "heads": heads}
+
+
+def cluster(run: Run, motes: Motes, time: float) -> dict[str, dict[str, np.ndarray]]:
+    """The head and the members of the newest cluster, and a spoke from it to each of them."""
+    rows = run.clusters.until(time)[-1:]
+    nodes = np.array(
+        [*rows["head"], *(member for row in rows["members"] for member in run.members[row])], dtype=np.int64
+    )
+    at, known = motes.index(nodes)
+    places = motes.xy[at[known]] if len(motes.nodes) else np.zeros((0, 2))
+    has_head = len(known) > 0 and bool(known[0])
+    head, members = places[: int(has_head)], places[int(has_head) :]
+    spokes = [np.stack([head[0], member], axis=1) for member in members] if has_head else []
+    return {
+        "head": {"x": head[:, 0], "y": head[:, 1]},
+        "members": {"x": members[:, 0], "y": members[:, 1]},
+        "spokes": {"xs": [spoke[0] for spoke in spokes], "ys": [spoke[1] for spoke in spokes]},
+    }
+
+
+def sink_view(run: Run, time: float) -> dict[str, dict[str, np.ndarray]]:
+    """Where the sink has the target, and has had it."""
+    rows = run.sink.between(time - TRAIL_S, time)
+    return {"sink_path": {"x": rows["x"], "y": rows["y"]}, "sink": {"x": rows["x"][-1:], "y": rows["y"][-1:]}}
 
 
 def timeline(run: Run, bins: int = 240) -> dict[str, dict[str, np.ndarray]]:
