@@ -218,29 +218,35 @@ static void act(struct network *network, const struct host_action *action)
     }
 }
 
-/* A head tells its members of a cluster more than once; the observer hears of it once. */
+/* A head tells its members of a cluster more than once, and other heads may speak in between; the observer hears of it once. */
+static bool is_told(const struct network *network, const mh_form_t *form)
+{
+    for (int i = 0; i < NETWORK_FORMS && (uint64_t)i < network->forms; i++) {
+        const mh_form_t *told = &network->formed[i];
+        if (told->sender == form->sender && told->track == form->track && told->generation == form->generation) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void tell_cluster(struct network *network, const struct network_frame *frame)
 {
     const struct observer *observer = network->config.observer;
     struct mh_message message;
     if (!observer->cluster || frame_kind(&network->kinds, frame->bytes, frame->length) != MH_MESSAGE_FORM ||
-        mh_wire_decode(mh_wire_all, frame->bytes, frame->length, &message) != MH_OK) {
+        mh_wire_decode(mh_wire_all, frame->bytes, frame->length, &message) != MH_OK ||
+        is_told(network, &message.as.form)) {
         return;
     }
     const mh_form_t *form = &message.as.form;
-    const bool again = network->has_formed && network->formed.sender == form->sender &&
-                       network->formed.track == form->track && network->formed.generation == form->generation;
-    if (again) {
-        return;
-    }
     mh_node_id members[sizeof form->members / sizeof form->members[0]];
     for (int i = 0; i < form->count; i++) {
         members[i] = (mh_node_id)form->members[i];
     }
     observer->cluster(observer->context, seconds(network, (int64_t)frame->time), (uint32_t)form->track,
-                      (mh_node_id)form->sender, members, form->count, network->has_formed);
-    network->formed = *form;
-    network->has_formed = true;
+                      (mh_node_id)form->sender, members, form->count, network->forms > 0);
+    network->formed[network->forms++ % NETWORK_FORMS] = *form;
 }
 
 static void tell_frame(struct network *network, const struct network_frame *frame)

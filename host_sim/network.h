@@ -35,6 +35,8 @@ struct network_config {
     void (*report)(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate);
 };
 
+enum { NETWORK_FORMS = 8 };
+
 struct network {
     struct network_config config;
     sim_time lookahead, mote_interval;
@@ -52,8 +54,8 @@ struct network {
     struct arena arena;                                  /* bytes and receivers of the window's frames */
     uint64_t windows, frames_sent[MH_MESSAGE_KINDS + 1]; /* the last: of no known kind */
     struct frame_kinds kinds;
-    mh_form_t formed; /* the cluster told last */
-    bool has_formed;
+    mh_form_t formed[NETWORK_FORMS]; /* the clusters told last, the n-th of all in place n modulo their number */
+    uint64_t forms;
     struct account account;
     double *clock_error_s; /* of each mote, NaN where it does not know the time; NULL if all clocks are ideal */
     struct clock_errors clock_errors;

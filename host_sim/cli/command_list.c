@@ -39,7 +39,7 @@ static void put_keys(void)
     for (size_t i = 0; i < scenario_key_count; i++) {
         const struct scenario_key *key = &scenario_keys[i];
         char expectation[200];
-        printf("%-30s %-14s %s%s%s\n", key->path, key->standard[0] != '\0' ? key->standard : "-",
+        printf("%-30s %-20s %s%s%s\n", key->path, key->standard[0] != '\0' ? key->standard : "-",
                scenario_key_expectation(key, expectation, sizeof expectation), key->help[0] != '\0' ? "; " : "",
                key->help);
     }
@@ -48,7 +48,7 @@ static void put_keys(void)
 static void put_metrics(void)
 {
     for (size_t i = 0; i < METRIC_COUNT; i++) {
-        printf("%-30s %s\n", metric_names[i], metric_meanings[i]);
+        printf("%-34s %s\n", metric_names[i], metric_meanings[i]);
     }
 }
 

@@ -205,6 +205,93 @@ static void any_path_will_do(void)
     }
 }
 
+/* ---- clusters, over the air and in the ideal network ---- */
+
+static struct {
+    unsigned clusters, new_ones, estimates, estimates_by_told, sinks;
+    double last_sink_s, worst_m;
+    bool was_head[NODES];
+} followed;
+
+static void hear_cluster(void *context, double time_s, uint32_t track, mh_node_id head, const mh_node_id *members,
+                         size_t count, bool is_new)
+{
+    (void)context, (void)time_s, (void)track;
+    TEST_ASSERT_TRUE(head < NODES);
+    for (size_t i = 0; i < count; i++) {
+        TEST_ASSERT_TRUE(members[i] < NODES && members[i] != head);
+        const struct recorded_node *a = &seen.nodes.nodes[members[i]], *b = &seen.nodes.nodes[head];
+        TEST_ASSERT_TRUE(hypot(a->x_m - b->x_m, a->y_m - b->y_m) <= 100.01); /* motes know whole millimetres */
+        for (size_t j = 0; j < i; j++) {
+            TEST_ASSERT_TRUE(members[i] != members[j]);
+        }
+    }
+    followed.was_head[head] = true;
+    followed.clusters++;
+    followed.new_ones += is_new;
+}
+
+static void hear_head(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                      const struct truth *at_time, const struct truth *at_arrival)
+{
+    (void)context, (void)time_s, (void)estimate, (void)at_time, (void)at_arrival;
+    TEST_ASSERT_TRUE(head < NODES);
+    followed.estimates++;
+    followed.estimates_by_told += followed.was_head[head];
+}
+
+static void hear_sink(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time)
+{
+    (void)context;
+    TEST_ASSERT_TRUE(time_s >= at_time->time_s && fabs(remainder(at_time->time_s, 2)) < 1e-9);
+    TEST_ASSERT_TRUE(at_time->time_s > followed.last_sink_s);
+    followed.last_sink_s = at_time->time_s;
+    followed.worst_m =
+        fmax(followed.worst_m, hypot(estimate->origin.x_mm * 1e-3 + (double)estimate->position.x - at_time->x_m,
+                                     estimate->origin.y_mm * 1e-3 + (double)estimate->position.y - at_time->y_m));
+    followed.sinks++;
+}
+
+static void follow_in_clusters(bool ideal)
+{
+    static const struct observer observer = {.cluster = hear_cluster, .estimate = hear_head, .sink = hear_sink};
+    memset(&followed, 0, sizeof followed);
+    followed.last_sink_s = -1;
+    set("network.protocol", "cluster");
+    set("network.ideal", ideal ? "true" : "false");
+    set("tracker.name", "range");
+    set("radio.profile", "802154");
+    set("radio.range_m", "100");
+    set("radio.wake_period_s", "0.25");
+    set("source.duration_s", "600");
+    TEST_ASSERT_EQUAL_INT(0, deployment_make(&seen.nodes, &scenario, 4, error, sizeof error));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, simulation_run(&scenario, 4, &observer, NULL, &counters, error, sizeof error),
+                                  error);
+    printf("  %u clusters told, %u formed, %u positions, %u by heads told of, %u at the sink\n", followed.clusters,
+           counters.clusters.total.formed, followed.estimates, followed.estimates_by_told, followed.sinks);
+    TEST_ASSERT_TRUE(counters.clusters.present);
+    TEST_ASSERT_TRUE(followed.new_ones >= 10);
+    TEST_ASSERT_TRUE(followed.sinks >= 280 && followed.sinks <= 301);
+    TEST_ASSERT_TRUE(followed.estimates >= 290);
+    TEST_ASSERT_TRUE(counters.clusters.total.reports >= 30 &&
+                     counters.clusters.total.answered <= counters.clusters.total.asked);
+}
+
+static void clusters_of_the_ideal_network_are_told(void)
+{
+    follow_in_clusters(true);
+    TEST_ASSERT_EQUAL_UINT(counters.clusters.total.formed, followed.new_ones);
+    TEST_ASSERT_EQUAL_UINT(301, followed.sinks);
+    TEST_ASSERT_EQUAL_UINT(followed.estimates, followed.estimates_by_told);
+}
+
+/* A head may find and follow the target for a moment before its formation is on the air. */
+static void clusters_over_the_air_are_told(void)
+{
+    follow_in_clusters(false);
+    TEST_ASSERT_TRUE(followed.estimates_by_told * 10 >= followed.estimates * 9);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -213,5 +300,7 @@ int main(void)
     RUN_TEST(a_sensor_may_be_biased);
     RUN_TEST(a_tracker_gets_what_it_works_on);
     RUN_TEST(any_path_will_do);
+    RUN_TEST(clusters_of_the_ideal_network_are_told);
+    RUN_TEST(clusters_over_the_air_are_told);
     port_exit(UNITY_END() > 0);
 }
