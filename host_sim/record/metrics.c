@@ -178,7 +178,8 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
         ranged ? error_in_ranges(recorder->tracks, recorder->track_count, recorder, scenario) : none;
     values[METRIC_SINK_ERROR_RS] =
         ranged ? error_in_ranges(recorder->sinks, recorder->sink_count, recorder, scenario) : none;
-    values[METRIC_RMSE_OVER_PCRB] = values[METRIC_POSITION_RMSE_M] / recorder->totals[TOTAL_PCRB_M];
+    const double pcrb_m = recorder->totals[TOTAL_PCRB_M];
+    values[METRIC_RMSE_OVER_PCRB] = pcrb_m > 0 ? values[METRIC_POSITION_RMSE_M] / pcrb_m : none;
     values[METRIC_LONGEST_GAP_S] = ranged ? longest_gap_s(recorder, scenario->sensor.range_m) : none;
     memcpy(&values[METRIC_FIRST_TOTAL], recorder->totals, sizeof recorder->totals);
 }

@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,6 +51,49 @@ static int cannot_write(const char *folder, int reason, char *error, size_t erro
     return fail(error, error_size, "%s: cannot write into this folder: %s", folder, strerror(reason));
 }
 
+/* Of the folder at `path` everything, if that is files. */
+static void remove_folder(const char *path)
+{
+    DIR *folder = opendir(path);
+    if (folder == NULL) {
+        return;
+    }
+    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        char file[OUTPUT_PATH_MAX];
+        snprintf(file, sizeof file, "%.3800s/%.200s", path, entry->d_name);
+        unlink(file);
+    }
+    closedir(folder);
+    rmdir(path);
+}
+
+/* What processes that were killed have left of the same output. */
+static void remove_abandoned(const struct output *output)
+{
+    char path[OUTPUT_PATH_MAX];
+    snprintf(path, sizeof path, "%s", output->partial);
+    char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
+    const size_t stem = (size_t)(strrchr(name, '-') + 1 - name);
+    char wanted[256];
+    snprintf(wanted, sizeof wanted, "%.*s", (int)stem, name);
+    *name = '\0';
+    DIR *folder = opendir(slash != NULL ? path : ".");
+    if (folder == NULL) {
+        return;
+    }
+    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        char *end = NULL;
+        const long process = strncmp(entry->d_name, wanted, stem) == 0 ? strtol(entry->d_name + stem, &end, 10) : 0;
+        const bool gone = process > 0 && *end == '\0' && kill((pid_t)process, 0) != 0 && errno == ESRCH;
+        if (gone) {
+            char abandoned[OUTPUT_PATH_MAX];
+            snprintf(abandoned, sizeof abandoned, "%.3800s%.200s", path, entry->d_name);
+            remove_folder(abandoned);
+        }
+    }
+    closedir(folder);
+}
+
 int output_open(struct output *output, const char *folder, char *error, size_t error_size)
 {
     size_t length = strlen(folder);
@@ -76,6 +120,7 @@ int output_open(struct output *output, const char *folder, char *error, size_t e
                  output->folder + parent, (long)getpid());
     }
     output_discard(output); /* of a process that died and had our number */
+    remove_abandoned(output);
     if (make_parents(output->folder) != 0 || mkdir(output->partial, 0777) != 0) {
         return cannot_write(output->folder, errno, error, error_size);
     }
@@ -156,16 +201,4 @@ int output_commit(struct output *output, const char *const *names, size_t count,
     return status == 0 ? 0 : cannot_write(output->folder, reason, error, error_size);
 }
 
-void output_discard(struct output *output)
-{
-    DIR *folder = opendir(output->partial);
-    if (folder == NULL) {
-        return;
-    }
-    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
-        char path[OUTPUT_PATH_MAX];
-        unlink(output_path(output, entry->d_name, path));
-    }
-    closedir(folder);
-    rmdir(output->partial);
-}
+void output_discard(struct output *output) { remove_folder(output->partial); }

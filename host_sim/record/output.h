@@ -20,7 +20,7 @@ struct output {
     bool existed;                  /* the folder, before we came */
 };
 
-/* Make the hidden folder, and the folders above. Returns 0, or -1 with one line in `error` if `folder` could not be
+/* Make the hidden folder, and the folders above. Hidden folders of the same output whose process is no more go. Returns 0, or -1 with one line in `error` if `folder` could not be
  * written. */
 int output_open(struct output *output, const char *folder, char *error, size_t error_size);
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static char base[64];
@@ -94,6 +95,45 @@ static void a_discarded_output_leaves_what_was_there(void)
     output_discard(&output);
     assert_file("out/runs.csv", "old");
     TEST_ASSERT_EQUAL_INT(1, entries(base, ""));
+}
+
+/* Opens the output and is gone, as if it were killed. */
+static void be_killed_over(const char *name)
+{
+    const pid_t child = fork();
+    TEST_ASSERT_TRUE(child >= 0);
+    if (child == 0) {
+        struct output output;
+        _exit(output_open(&output, at(name), error, sizeof error) == 0 &&
+                      output_create(&output, "runs.csv", error, sizeof error) != NULL
+                  ? 0
+                  : 1);
+    }
+    int status;
+    TEST_ASSERT_EQUAL_INT(child, waitpid(child, &status, 0));
+    TEST_ASSERT_EQUAL_INT(0, status);
+}
+
+static void what_a_killed_process_left_goes_and_what_others_write_stays(void)
+{
+    struct output output;
+    char living[100];
+    snprintf(living, sizeof living, ".out.partial-%ld", (long)getppid());
+    TEST_ASSERT_EQUAL_INT(0, mkdir(at(living), 0777));
+    TEST_ASSERT_EQUAL_INT(0, mkdir(at(".out.partial-"), 0777));
+    be_killed_over("other");
+    be_killed_over("out");
+    TEST_ASSERT_EQUAL_INT(3, entries(base, ".out"));
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("out"), error, sizeof error));
+    output_discard(&output);
+    TEST_ASSERT_EQUAL_INT(2, entries(base, ".out"));
+    TEST_ASSERT_EQUAL_INT(1, entries(base, ".other"));
+    TEST_ASSERT_EQUAL_INT(0, mkdir(at("out"), 0777)); /* the hidden folder is then within it */
+    be_killed_over("out");
+    TEST_ASSERT_EQUAL_INT(1, entries(at("out"), ""));
+    TEST_ASSERT_EQUAL_INT(0, output_open(&output, at("out"), error, sizeof error));
+    output_discard(&output);
+    TEST_ASSERT_EQUAL_INT(0, entries(at("out"), ""));
 }
 
 static void a_commit_replaces_results_and_nothing_else(void)
@@ -232,6 +272,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(nothing_shows_before_the_commit_and_all_after);
     RUN_TEST(a_discarded_output_leaves_what_was_there);
+    RUN_TEST(what_a_killed_process_left_goes_and_what_others_write_stays);
     RUN_TEST(a_commit_replaces_results_and_nothing_else);
     RUN_TEST(a_link_to_a_folder_and_the_working_folder_are_written_into);
     RUN_TEST(a_folder_that_cannot_be_written_is_refused);
