@@ -132,7 +132,7 @@ bool mh_cluster_contest(struct mh_cluster_node *c, const struct mh_cluster_of *o
     if (!concerns(c, other)) {
         return true;
     }
-    if (mh_cluster_outranks(other, &c->of)) {
+    if (mh_cluster_outranks(other, &c->of) || c->misses > 0) {
         c->events.yielded++;
         mh_cluster_follow(c);
         return false;
@@ -326,7 +326,7 @@ static void stay(struct mh_cluster_node *c)
 static void hand_over(struct mh_cluster_node *c)
 {
     c->handing = true;
-    c->next_generation = c->of.generation;
+    c->next_generation = (int32_t)((uint32_t)c->of.generation + c->afresh);
     mh_cluster_set(c, MH_CLUSTER_KEEP, c->of.heard + interval_of(c) / 8 * 7);
     if (!offer(c)) {
         stay(c);
@@ -540,7 +540,7 @@ static void elect(struct mh_cluster_node *c, const struct mh_estimate *estimate,
         return;
     }
     c->cluster = c->next;
-    c->of.generation = (int32_t)((uint32_t)c->of.generation + 1);
+    c->of.generation = (int32_t)((uint32_t)c->of.generation + 1 + c->afresh);
     c->counters.formed++;
     announce_soon(c);
 }

@@ -8,6 +8,7 @@
 #define ANSWER_TIME 12    /* ticks that an answer takes, acknowledged */
 #define ANSWER_TRIES 2    /* beside what the radio does on its own */
 #define JOIN_SLOT 4       /* ticks between the members' answers to a form_t */
+#define ALERT_WINDOWS 5   /* over which those who have found the target spread */
 #define SILENT_INSTANTS 2 /* after which a head counts as dead */
 
 static mh_tick interval_of(const struct mh_cluster_node *c) { return c->config->election.interval; }
@@ -206,25 +207,42 @@ void mh_cluster_answer_sent(struct mh_cluster_node *c, enum mh_sent outcome)
 
 /* ---- on one's own ---- */
 
-/* The target was found by a node that nobody has asked. */
+/* Of several who have found the target the nearest speaks first: one of a few windows, and in that sooner or later. */
+static mh_tick alert_time(const struct mh_cluster_node *c, mh_q20 range)
+{
+    const mh_real reach =
+        mh_clamp(mh_q20_to_real(range) / c->config->election.sensing_range_m, 0, 1.0f) * ALERT_WINDOWS;
+    const uint8_t windows = reach < ALERT_WINDOWS ? (uint8_t)reach : ALERT_WINDOWS - 1;
+    return mh_rendezvous_after(&c->rendezvous, c->time, windows) +
+           (mh_tick)((reach - (mh_real)windows) * (mh_real)(c->config->wake_length / 2));
+}
+
+/* The target was found by a node that nobody has asked. It counts as a generation behind the cluster that it has heard of until it has formed its
+ * own, so that a head whose asking it has only missed goes on. */
 static void found(struct mh_cluster_node *c, const struct mh_measurement *measurement)
 {
-    if (heard_within(c, measurement->time, 1) || mh_cluster_is_set(c, MH_CLUSTER_ALERT) || !c->node->is_head) {
-        return;
-    }
     const bool goes_on = heard_within(c, measurement->time, MH_CLUSTER_SEARCH);
     const mh_alert_t alert = {.sender = (int32_t)c->node->id,
                               .track = (int32_t)(goes_on ? c->of.track : c->node->id),
-                              .generation = goes_on ? (int32_t)((uint32_t)c->of.generation + 1) : 1,
+                              .generation = goes_on ? (int32_t)((uint32_t)c->of.generation - 1) : 0,
                               .time_ms = (int32_t)measurement->time,
                               .x_mm = c->node->place.x_mm,
                               .y_mm = c->node->place.y_mm,
                               .value_q20 = measurement->value};
-    const mh_real reach = mh_clamp(mh_q20_to_real(measurement->value) / c->config->election.sensing_range_m, 0, 1.0f);
-    const mh_tick length = c->config->wake_period > 0 ? c->config->wake_length : 20;
     c->alert = alert;
-    mh_cluster_set(c, MH_CLUSTER_ALERT,
-                   mh_rendezvous_after(&c->rendezvous, c->time, 0) + (mh_tick)(reach * (mh_real)(length / 2)));
+    mh_cluster_set(c, MH_CLUSTER_ALERT, alert_time(c, measurement->value));
+}
+
+static void sampled_unasked(struct mh_cluster_node *c, const struct mh_measurement *measurement)
+{
+    if (!c->node->is_head || mh_cluster_is_set(c, MH_CLUSTER_ALERT) || mh_cluster_is_set(c, MH_CLUSTER_TAKE_OVER)) {
+        return;
+    }
+    if (c->role == MH_CLUSTER_MEMBER && !heard_within(c, c->time, SILENT_INSTANTS - 1)) {
+        mh_cluster_set(c, MH_CLUSTER_TAKE_OVER, mh_cluster_window(c, c->rank));
+    } else if (!heard_within(c, measurement->time, SILENT_INSTANTS)) {
+        found(c, measurement);
+    }
 }
 
 void mh_cluster_sampled(struct mh_cluster_node *c, const struct mh_measurement *measurement)
@@ -232,7 +250,7 @@ void mh_cluster_sampled(struct mh_cluster_node *c, const struct mh_measurement *
     const int32_t off = c->asked ? mh_ticks_between(c->asked_for, measurement->time) : INT32_MAX;
     const int32_t limit = (int32_t)(interval_of(c) / 4);
     if (off < -limit || off > limit) {
-        found(c, measurement);
+        sampled_unasked(c, measurement);
         return;
     }
     c->counters.answered++;
@@ -255,7 +273,7 @@ void mh_cluster_watch(struct mh_cluster_node *c)
         mh_cluster_listen(c, instant + c->config->window);
     }
     mh_cluster_plan(c);
-    if (role == MH_CLUSTER_SLEEPER && !heard_within(c, instant, 1)) {
+    if (role == MH_CLUSTER_SLEEPER && !heard_within(c, instant, SILENT_INSTANTS)) {
         c->node->port->sense(c->node->context, c->now, instant);
     }
 }
@@ -318,10 +336,6 @@ void mh_cluster_hear_alert(struct mh_cluster_node *c, const mh_alert_t *alert)
         }
         return;
     }
-    if (c->role == MH_CLUSTER_HEAD && c->misses == 0 && mh_cluster_outranks(&of, &c->of)) {
-        /* it has not been asked though it could have been: this head goes on */
-        c->of.generation = (int32_t)((uint32_t)of.generation + 1);
-    }
     if (hear_of(c, &of)) {
         mh_cluster_plan(c);
     }
@@ -329,12 +343,12 @@ void mh_cluster_hear_alert(struct mh_cluster_node *c, const mh_alert_t *alert)
 
 /* ---- a silent head ---- */
 
+/* The head has asked at neither of the last instants. Who measures the target all the same, and has not just been left behind, is to take over. */
 void mh_cluster_missed(struct mh_cluster_node *c)
 {
     c->listening = false;
-    if (c->role == MH_CLUSTER_MEMBER && !heard_within(c, c->time, SILENT_INSTANTS - 1) &&
-        !mh_cluster_is_set(c, MH_CLUSTER_TAKE_OVER)) {
-        mh_cluster_set(c, MH_CLUSTER_TAKE_OVER, mh_cluster_window(c, c->rank));
+    if (c->role == MH_CLUSTER_MEMBER && !heard_within(c, c->time, SILENT_INSTANTS - 1)) {
+        c->node->port->sense(c->node->context, c->now, c->of.heard + SILENT_INSTANTS * interval_of(c));
     }
 }
 
