@@ -34,7 +34,7 @@ struct run {
     double *range_m;
     uint32_t *asked; /* nodes ... */
     size_t asked_count;
-    size_t far_first, far_count; /* those of them out of the head's range */
+    size_t far_first; /* from there on those out of the head's range */
     struct mh_measurement *answers;
     size_t answer_count;
     struct mh_candidate *candidates; /* room for every node */
@@ -67,6 +67,30 @@ static size_t sense(struct run *run)
 
 static void add_asked(struct run *run, uint32_t node) { run->asked[run->asked_count++] = node; }
 
+static bool was_asked(const struct run *run, uint32_t node)
+{
+    size_t i = 0;
+    while (i < run->asked_count && run->asked[i] != node) {
+        i++;
+    }
+    return i < run->asked_count;
+}
+
+static size_t count_answers(const struct run *run)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < run->asked_count; i++) {
+        count += run->detects[run->asked[i]];
+    }
+    return count;
+}
+
+static int by_node(const void *a, const void *b)
+{
+    const mh_node_id left = ((const struct mh_measurement *)a)->node, right = ((const struct mh_measurement *)b)->node;
+    return (left > right) - (left < right);
+}
+
 static void take_answers(struct run *run)
 {
     run->answer_count = 0;
@@ -80,14 +104,24 @@ static void take_answers(struct run *run)
                                         .value = mh_q20_from_real((mh_real)run->range_m[node])};
         }
     }
+    qsort(run->answers, run->answer_count, sizeof *run->answers, by_node);
     run->counters.asked += (uint32_t)run->asked_count;
     run->counters.answered += (uint32_t)run->answer_count;
 }
 
-static int by_node(const void *a, const void *b)
+/* The head's request to asked[first ..], their samples, and the answers of those that detect the target. */
+static void charge_request(struct run *run, uint32_t head, size_t first)
 {
-    const mh_node_id left = ((const struct mh_measurement *)a)->node, right = ((const struct mh_measurement *)b)->node;
-    return (left > right) - (left < right);
+    struct ledger *ledger = &run->ledger;
+    ledger_broadcast(ledger, ENERGY_MEASURING, head, run->asked + first, run->asked_count - first, REQUEST_BYTES);
+    for (size_t i = first; i < run->asked_count; i++) {
+        const uint32_t node = run->asked[i];
+        ledger_charge(ledger, node, ENERGY_LISTEN, ENERGY_MEASURING, guard_ms);
+        ledger_sample(ledger, node);
+        if (run->detects[node]) {
+            ledger_unicast(ledger, ENERGY_MEASURING, node, head, run->sizes->answer);
+        }
+    }
 }
 
 /* By the rules scm* all who detect the target are heard: those out of the head's range by way of others. */
@@ -95,7 +129,6 @@ static void ask_beyond(struct run *run, uint32_t head)
 {
     const struct mh_place *centre = &run->vicinity.place[head];
     const uint32_t range_mm = (uint32_t)((double)run->election.radio_range_m * 1e3);
-    run->far_first = run->asked_count;
     for (uint32_t node = 0; node < run->deployment.count; node++) {
         if (run->detects[node] && !mh_place_within(&run->vicinity.place[node], centre, range_mm)) {
             ledger_unicast(&run->ledger, ENERGY_MEASURING, head, node, REQUEST_BYTES);
@@ -104,38 +137,41 @@ static void ask_beyond(struct run *run, uint32_t head)
             add_asked(run, node);
         }
     }
-    run->far_count = run->asked_count - run->far_first;
 }
 
-/* The head asks, and all who are asked sample; those who detect answer. */
-static void ask(struct run *run, const struct mh_place *predicted)
+/* Add those of the head's neighbours that the rule asks, or with `all` those that it has left out. */
+static void add_neighbours(struct run *run, uint32_t head, const struct mh_place *predicted, bool all)
 {
-    const uint32_t head = index_of(run, run->cluster.head.id);
-    struct ledger *ledger = &run->ledger;
-    run->asked_count = run->far_count = 0;
     for (size_t k = run->vicinity.first[head]; k < run->vicinity.first[head + 1]; k++) {
         const uint32_t node = run->vicinity.neighbours[k];
-        if (node < run->deployment.count && mh_election_asks(&run->election, &run->cluster, run->vicinity.id[node],
-                                                             &run->vicinity.place[node], predicted)) {
+        if (node < run->deployment.count &&
+            (all ? !was_asked(run, node)
+                 : mh_election_asks(&run->election, &run->cluster, run->vicinity.id[node], &run->vicinity.place[node],
+                                    predicted))) {
             add_asked(run, node);
         }
     }
-    ledger_broadcast(ledger, ENERGY_MEASURING, head, run->asked, run->asked_count, REQUEST_BYTES);
-    for (size_t i = 0; i < run->asked_count; i++) {
-        const uint32_t node = run->asked[i];
-        ledger_charge(ledger, node, ENERGY_LISTEN, ENERGY_MEASURING, guard_ms);
-        ledger_sample(ledger, node);
-        if (run->detects[node]) {
-            ledger_unicast(ledger, ENERGY_MEASURING, node, head, run->sizes->answer);
-        }
+}
+
+/* The head samples and asks, and all who are asked sample; those who detect the target answer. */
+static void ask(struct run *run, const struct mh_place *predicted)
+{
+    const uint32_t head = index_of(run, run->cluster.head.id);
+    run->asked_count = 0;
+    add_asked(run, head);
+    ledger_sense(&run->ledger, head);
+    add_neighbours(run, head, predicted, false);
+    charge_request(run, head, 1);
+    if (mh_election_asks_all(&run->election, count_answers(run))) {
+        const size_t before = run->asked_count;
+        add_neighbours(run, head, predicted, true);
+        charge_request(run, head, before);
     }
+    run->far_first = run->asked_count;
     if (!has_members_listed(run)) {
         ask_beyond(run, head);
     }
-    ledger_sense(ledger, head);
-    add_asked(run, head);
     take_answers(run);
-    qsort(run->answers, run->answer_count, sizeof *run->answers, by_node);
 }
 
 /* Before there is a head everybody who detects the target is heard. */
@@ -184,8 +220,8 @@ static size_t around(struct run *run, uint32_t head)
             add_candidate(run, run->vicinity.neighbours[k], &count);
         }
     }
-    for (size_t i = 0; i < run->far_count; i++) {
-        add_candidate(run, run->asked[run->far_first + i], &count);
+    for (size_t i = run->far_first; i < run->asked_count; i++) {
+        add_candidate(run, run->asked[i], &count);
     }
     return count;
 }

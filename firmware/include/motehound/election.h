@@ -2,7 +2,7 @@
  *
  * At each sampling instant the head asks nodes around it, localises the target, and then decides on the cluster of the next instant. All
  * rules look ahead along a straight line: the target is expected at P_q = stored + q T stored_velocity in q instants, from what is stored of
- * the track (estimate.h). A node covers a place within the sensing range of it. Candidates are the head and its neighbours.
+ * the track (estimate.h) but for sacx. A node covers a place within the sensing range of it. Candidates are the head and its neighbours.
  *
  * Zhou et al., "Energy-efficient target tracking in wireless sensor networks", Journal of Software, 2013:
  *   sac       Few, and those that will serve longest. The head and `members` others are asked. A new cluster is due when the head does not
@@ -10,8 +10,9 @@
  *             there are more candidates that cover P_1 than that. Of these, ordered by how many of P_1 ... P_horizon they cover (most first),
  *             then by the distance to P_horizon, the first is head and the next are members.
  *   sacx      The same with a horizon as long as the target takes to cross a disc of the sensing range, ties broken by the distance to the
- *             middle of the way, and as members those neighbours of the new head that cover any instant of it. A member is asked
- *             only when the target is expected within the sensing range and MH_ELECTION_MARGIN_M of it.
+ *             middle of the way, and as members those neighbours of the new head that cover any instant of it. The way ahead is
+ *             that of the tracker's own position and velocity, which its head knows. A member is asked only when the target is
+ *             expected within the sensing range and MH_ELECTION_MARGIN_M of it; all neighbours, when few of these detect it.
  *   scm       All neighbours of the head are asked. The nodes that detect form a new cluster as soon as one of them is new to it, or the
  *             head detects no more; its head is the one nearest to the position.
  *   scm_near  The same, as soon as another detecting node is the nearest.
@@ -106,6 +107,10 @@ enum mh_status mh_elect_first(const struct mh_election_config *config, const str
 /* True if node `id` at `place` is to sample at the instant for which the target is expected at `predicted`. The head always is. */
 bool mh_election_asks(const struct mh_election_config *config, const struct mh_cluster *cluster, mh_node_id id,
                       const struct mh_place *place, const struct mh_place *predicted);
+
+/* sacx: so few of those asked detect the target that the head is to ask all its other neighbours too, at the same instant: fewer than
+ * least_answers. The prediction was wrong, and a position from few ranges may be, too; by the other rules it is made of those. */
+bool mh_election_asks_all(const struct mh_election_config *config, size_t answers);
 
 /* The member, or the head, with identifier `id`; NULL if it is not of the cluster. */
 const struct mh_member *mh_cluster_find(const struct mh_cluster *cluster, mh_node_id id);

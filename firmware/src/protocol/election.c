@@ -59,10 +59,15 @@ bool mh_election_asks(const struct mh_election_config *config, const struct mh_c
             mh_place_within(place, predicted, millimetres(config->sensing_range_m + MH_ELECTION_MARGIN_M)));
 }
 
-/* The way of the target as all see it: relative to `origin`, in metres. */
+bool mh_election_asks_all(const struct mh_election_config *config, size_t answers)
+{
+    return config->rule == MH_ELECTION_SACX && answers < config->least_answers;
+}
+
+/* Where the target is and goes: relative to `origin`, in metres. */
 struct way {
     struct mh_place origin;
-    struct mh_vec2 position, stored, step; /* step: of one interval */
+    struct mh_vec2 position, start, step; /* step: of one interval from `start` */
     mh_real step_length;
     mh_real sensing_squared;
     uint32_t sensing_mm, radio_mm;
@@ -75,15 +80,21 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
     const mh_real interval_s = (mh_real)config->interval * (1.0f / (mh_real)MH_TICKS_PER_S);
     way->origin = estimate->origin;
     way->position = estimate->position;
-    way->stored = estimate->stored;
-    way->step.x = estimate->stored_velocity.x * interval_s;
-    way->step.y = estimate->stored_velocity.y * interval_s;
+    if (config->rule == MH_ELECTION_SACX) {
+        way->start = estimate->position;
+        way->step = estimate->velocity;
+    } else {
+        way->start = estimate->stored;
+        way->step = estimate->stored_velocity;
+    }
+    way->step.x *= interval_s;
+    way->step.y *= interval_s;
     way->step_length = mh_sqrt(mh_squared(way->step.x) + mh_squared(way->step.y));
     way->sensing_squared = mh_squared(config->sensing_range_m);
     way->sensing_mm = millimetres(config->sensing_range_m);
     way->radio_mm = millimetres(config->radio_range_m);
-    if (!mh_finite(way->position.x) || !mh_finite(way->position.y) || !mh_finite(way->stored.x) ||
-        !mh_finite(way->stored.y) || !mh_finite(way->step_length)) {
+    if (!mh_finite(way->position.x) || !mh_finite(way->position.y) || !mh_finite(way->start.x) ||
+        !mh_finite(way->start.y) || !mh_finite(way->step_length)) {
         return MH_ERR_NOT_FINITE;
     }
     way->horizon = config->horizon;
@@ -102,8 +113,8 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
 static struct mh_vec2 from_prediction(const struct way *way, mh_real intervals, const struct mh_place *place)
 {
     struct mh_vec2 v = mh_place_relative(place, &way->origin);
-    v.x -= way->stored.x + intervals * way->step.x;
-    v.y -= way->stored.y + intervals * way->step.y;
+    v.x -= way->start.x + intervals * way->step.x;
+    v.y -= way->start.y + intervals * way->step.y;
     return v;
 }
 
@@ -331,9 +342,8 @@ static uint8_t suits(const struct way *way, const struct mh_candidate *candidate
     }
     const struct mh_vec2 d = from_prediction(way, 0.0f, &candidate->place);
     const mh_real ahead = d.x * way->step.x + d.y * way->step.y;
-    const bool in_sector =
-        !(way->step_length > 0) ||
-        (ahead >= 0 && 2.0f * mh_squared(ahead / way->step_length) >= square_of(d)); /* cos2 of 45 degrees is 1/2 */
+    const bool in_sector = !(way->step_length > 0) || (ahead >= 0 && 2.0f * mh_squared(ahead / way->step_length) >=
+                                                                         square_of(d)); /* cos2 of 45 degrees is 1/2 */
     return in_sector ? 2 : 1;
 }
 

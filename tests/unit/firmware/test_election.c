@@ -22,7 +22,7 @@ void setUp(void)
 {
     memset(&estimate, 0, sizeof estimate);
     memset(&cluster, 0, sizeof cluster);
-    estimate.stored_velocity.x = 10.0f;
+    estimate.velocity.x = estimate.stored_velocity.x = 10.0f;
     count = 0;
 }
 
@@ -230,6 +230,33 @@ static void who_is_asked(void)
     TEST_ASSERT_FALSE(mh_election_asks(&config, &cluster, 3, &out_of_it, &predicted));
 }
 
+static void sacx_looks_from_the_position_itself(void)
+{
+    use(MH_ELECTION_SACX);
+    estimate.stored.y = 300.0f;
+    estimate.stored_velocity.x = -10.0f;
+    place(1, -60, 0, true);
+    place(2, 40, 0, true);
+    place(3, 0, 290, true);
+    lead(0, 0);
+    TEST_ASSERT_EQUAL(MH_OK, elect());
+    TEST_ASSERT_EQUAL_UINT32(2, cluster.head.id);
+    use(MH_ELECTION_SAC);
+    lead(0, 0);
+    TEST_ASSERT_EQUAL(MH_OK, elect());
+    TEST_ASSERT_EQUAL_UINT32(3, cluster.head.id);
+}
+
+static void sacx_asks_all_when_few_answer(void)
+{
+    use(MH_ELECTION_SACX);
+    TEST_ASSERT_TRUE(mh_election_asks_all(&config, 0));
+    TEST_ASSERT_TRUE(mh_election_asks_all(&config, 3));
+    TEST_ASSERT_FALSE(mh_election_asks_all(&config, 4));
+    use(MH_ELECTION_SAC);
+    TEST_ASSERT_FALSE(mh_election_asks_all(&config, 0));
+}
+
 static void first_cluster_is_about_the_detection(void)
 {
     use(MH_ELECTION_SAC);
@@ -292,7 +319,7 @@ static void nobody_to_elect(void)
 
 static void target_at_rest(void)
 {
-    estimate.stored_velocity.x = 0;
+    estimate.velocity.x = estimate.stored_velocity.x = 0;
     place(1, -60, 0, false);
     place(2, 30, 0, true);
     place(3, -20, 0, true); /* behind, if there were such a thing */
@@ -439,6 +466,8 @@ int main(void)
     RUN_TEST(scm_variants_differ_in_when);
     RUN_TEST(sacx_looks_as_far_as_a_disc_is_wide);
     RUN_TEST(who_is_asked);
+    RUN_TEST(sacx_looks_from_the_position_itself);
+    RUN_TEST(sacx_asks_all_when_few_answer);
     RUN_TEST(first_cluster_is_about_the_detection);
     RUN_TEST(lowest_identifier_breaks_ties);
     RUN_TEST(nobody_to_elect);
