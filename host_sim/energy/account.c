@@ -1,15 +1,13 @@
 #include "energy/account.h"
 
-/* How often particle filters draw each particle in a step, on average: motes do not tell. */
-#define DRAWS_PER_PARTICLE 4.3
-
 int account_open(struct account *account, const struct scenario *scenario, const uint32_t *order, uint32_t motes,
                  uint32_t sink)
 {
     const struct energy_profile *profile = energy_profile_find(scenario->energy.profile);
-    *account = (struct account){.open = profile != NULL,
-                                .tracker = scenario->tracker.name,
-                                .draws = (uint32_t)(DRAWS_PER_PARTICLE * (double)scenario->tracker.particles)};
+    *account =
+        (struct account){.open = profile != NULL,
+                         .tracker = scenario->tracker.name,
+                         .draws = energy_tracker_draws(scenario->tracker.name, (int)scenario->tracker.particles)};
     if (!account->open) {
         return 0;
     }

@@ -34,5 +34,7 @@ uint64_t energy_sample_us(const struct energy_profile *profile); /* the processo
 uint64_t energy_frame_us(const struct energy_profile *profile);  /* ... for a frame received or sent */
 /* ... for a step of the tracker named, with so many measurements and particles drawn; 0 for a name that no row has. */
 uint64_t energy_tracker_us(const struct energy_profile *profile, const char *tracker, int measurements, uint32_t draws);
+/* How many particles a step of the tracker named draws on average, with so many to keep: where its mote does not tell. */
+uint32_t energy_tracker_draws(const char *tracker, int particles);
 
 #endif

@@ -46,19 +46,19 @@ void mh_particles_add_range(struct mh_particles *particles, uint16_t from, struc
 /* The least sum; infinite if none is finite. */
 mh_real mh_particles_least(const struct mh_particles *particles);
 
-/* Sums -> weights exp(-(sum - least) / (2 sd^2)), at most exp(40); 0 for a sum that is not finite. sd > 0: of a range. */
+/* Sums -> weights exp(-(sum - least) / (2 sd^2)), at most exp(40), 0 below exp(-80) and for a sum that is not finite. sd > 0: of a range. */
 void mh_particles_weigh(struct mh_particles *particles, uint16_t from, mh_real least, mh_real sd);
 
 /* (sum w)^2 / sum w^2: how many equal weights say as much; 0 where all weights are 0. */
 mh_real mh_particles_effective(const struct mh_particles *particles);
 
 /* Weighted mean, and covariance about it with `resolution` >= 0 (m2) added to both variances, so that it is positive definite for a
- * resolution > 0: what a set of this density cannot tell. Errors: MH_ERR_SINGULAR (all weights are 0), MH_ERR_NOT_FINITE. */
+ * resolution > 0: what a set of this density cannot tell. Errors: MH_ERR_SINGULAR (the weights sum to less than 1.2e-38), MH_ERR_NOT_FINITE. */
 enum mh_status mh_particles_mean(const struct mh_particles *particles, mh_real resolution, struct mh_vec2 *mean,
                                  struct mh_sym2 *covariance);
 
 /* Systematic resampling (Kitagawa, J. Comput. Graph. Stat. 5, 1996, "deterministic"): particle i goes on floor or ceiling of N w_i / sum w
- * times, N w_i / sum w times on average; all weights become 1. In place. Errors, the set untouched: MH_ERR_SINGULAR (all weights are 0),
+ * times, N w_i / sum w times on average; all weights become 1. In place. Errors, the set untouched: MH_ERR_SINGULAR (the weights sum to less than 1.2e-38),
  * MH_ERR_NOT_FINITE. */
 enum mh_status mh_particles_resample(struct mh_particles *particles, struct mh_random *random);
 
@@ -67,7 +67,7 @@ enum mh_status mh_particles_resample(struct mh_particles *particles, struct mh_r
  * stays as it is, with its own weight.
  *
  * redraw(context, particles, from) draws and weighs particles from, .. anew, relative to the same `least`. Particles are reordered.
- * Errors, the set untouched: MH_ERR_SINGULAR (all weights are 0), MH_ERR_NOT_FINITE. */
+ * Errors, the set untouched: MH_ERR_SINGULAR (the weights sum to less than 1.2e-38), MH_ERR_NOT_FINITE. */
 #define MH_PARTICLES_REDRAWS 10
 typedef void mh_particles_redraw(void *context, struct mh_particles *particles, uint16_t from);
 enum mh_status mh_particles_reject(struct mh_particles *particles, struct mh_random *random,

@@ -1,6 +1,8 @@
 #include "motehound/particles.h"
 
-#define EXPONENT_MAX 40.0f /* the squares of so large weights still have a sum */
+#define EXPONENT_MAX 40.0f  /* the squares of so large weights still have a sum */
+#define EXPONENT_MIN -80.0f /* smaller ones are far from all that adds up to 1, and slow near the smallest number */
+#define LEAST_SUM 1.2e-38f  /* its reciprocal is finite */
 
 void mh_particles_draw(struct mh_particles *particles, uint16_t from, const struct mh_sector *sector,
                        struct mh_random *random)
@@ -47,7 +49,8 @@ void mh_particles_weigh(struct mh_particles *particles, uint16_t from, mh_real l
     const mh_real scale = 0.5f / (sd * sd);
     for (uint16_t i = from; i < particles->count; i++) {
         const mh_real exponent = (least - particles->weight[i]) * scale;
-        particles->weight[i] = mh_finite(exponent) ? mh_exp(mh_min(exponent, EXPONENT_MAX)) : 0.0f;
+        particles->weight[i] =
+            exponent > EXPONENT_MIN && mh_finite(exponent) ? mh_exp(mh_min(exponent, EXPONENT_MAX)) : 0.0f;
     }
 }
 
@@ -61,7 +64,7 @@ static enum mh_status sum_of_weights(const struct mh_particles *particles, mh_re
     if (!mh_finite(*sum)) {
         return MH_ERR_NOT_FINITE;
     }
-    return *sum > 0.0f ? MH_OK : MH_ERR_SINGULAR;
+    return *sum >= LEAST_SUM ? MH_OK : MH_ERR_SINGULAR;
 }
 
 mh_real mh_particles_effective(const struct mh_particles *particles)
@@ -82,15 +85,16 @@ enum mh_status mh_particles_mean(const struct mh_particles *particles, mh_real r
     if (status != MH_OK) {
         return status;
     }
+    const mh_real scale = 1.0f / sum;
     struct mh_vec2 m = {0, 0};
     for (uint16_t i = 0; i < particles->count; i++) {
-        const mh_real share = particles->weight[i] / sum;
+        const mh_real share = particles->weight[i] * scale;
         m.x += share * particles->x[i];
         m.y += share * particles->y[i];
     }
     struct mh_sym2 c = {resolution, 0, resolution};
     for (uint16_t i = 0; i < particles->count; i++) {
-        const mh_real share = particles->weight[i] / sum;
+        const mh_real share = particles->weight[i] * scale;
         const mh_real dx = particles->x[i] - m.x, dy = particles->y[i] - m.y;
         c.xx += share * dx * dx;
         c.xy += share * dx * dy;
@@ -111,24 +115,20 @@ enum mh_status mh_particles_resample(struct mh_particles *particles, struct mh_r
     if (status != MH_OK) {
         return status;
     }
-    /* how often each goes on: the marks at start, start + 1, .. that fall into its part of 0 .. N; the last takes what rounding leaves */
+    /* how often each goes on: the marks at start, start + 1, .. that fall into its part of 0 .. N; the heaviest takes what rounding leaves */
     const uint16_t count = particles->count;
     const mh_real scale = (mh_real)count / sum, start = mh_random_unit(random);
-    mh_real reached = 0.0f;
+    mh_real reached = -start, largest = 0.0f;
     uint16_t marks = 0, heaviest = 0;
     for (uint16_t i = 0; i < count; i++) {
-        if (particles->weight[i] > particles->weight[heaviest]) {
-            heaviest = i;
-        }
-    }
-    for (uint16_t i = 0; i < count; i++) {
-        reached += particles->weight[i] * scale;
-        uint16_t times = 0;
-        while (marks < count && (mh_real)marks + start < reached) {
-            marks++;
-            times++;
-        }
-        particles->weight[i] = times;
+        const mh_real weight = particles->weight[i];
+        heaviest = weight > largest ? i : heaviest;
+        largest = mh_max(weight, largest);
+        reached += weight * scale;
+        const uint16_t whole = reached < (mh_real)count ? (uint16_t)mh_max(reached, 0.0f) : count;
+        const uint16_t passed = (uint16_t)(whole + ((mh_real)whole < reached && whole < count ? 1 : 0));
+        particles->weight[i] = (mh_real)(passed - marks);
+        marks = passed;
     }
     particles->weight[heaviest] += (mh_real)(count - marks);
     uint16_t place = 0;

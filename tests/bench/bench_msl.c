@@ -1,0 +1,29 @@
+/* Range-free Monte Carlo localisation with 50 particles and 8 nodes. */
+#include "bench.h"
+#include "motehound/msl.h"
+#include "ranging.h"
+
+struct mh_msl bench_state;
+static struct mh_measurement measurements[RANGING_MEASUREMENTS];
+static struct mh_estimate estimate;
+static unsigned now;
+
+void bench_setup(void)
+{
+    struct mh_msl_config config;
+    mh_msl_config_default(&config);
+    mh_tracker_msl.init(&bench_state, &config, RANGING_INTERVAL);
+}
+
+void bench_prepare(unsigned step)
+{
+    now = step;
+    ranging_measurements(step, measurements);
+}
+
+void bench_step(void)
+{
+    mh_tracker_msl.step(&bench_state, (mh_tick)now * RANGING_INTERVAL, measurements, RANGING_MEASUREMENTS, &estimate);
+}
+
+bool bench_worked(void) { return estimate.measurements == RANGING_MEASUREMENTS; }

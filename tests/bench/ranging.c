@@ -1,0 +1,39 @@
+#include "ranging.h"
+
+#include "motehound/random.h"
+
+/* nodes within 50 m of a place: eight */
+static const int32_t pitch_mm = 31000;
+
+void ranging_measurements(unsigned step, struct mh_measurement measurements[RANGING_MEASUREMENTS])
+{
+    const int32_t x_mm = 8000 * (int32_t)step, y_mm = 4000 * (int32_t)step;
+    struct mh_random noise;
+    mh_random_init(&noise, step);
+    mh_q20 kept[RANGING_MEASUREMENTS]; /* distances, ascending */
+    uint8_t count = 0;
+    for (int8_t i = -2; i <= 3; i++) {
+        for (int8_t j = -2; j <= 3; j++) {
+            const struct mh_place node = {(x_mm / pitch_mm + i) * pitch_mm, (y_mm / pitch_mm + j) * pitch_mm, 0};
+            const mh_real dx = (mh_real)(node.x_mm - x_mm) * 0.001f, dy = (mh_real)(node.y_mm - y_mm) * 0.001f;
+            const mh_q20 distance = mh_q20_from_real(mh_sqrt(dx * dx + dy * dy));
+            uint8_t at = count;
+            for (; at > 0 && kept[at - 1] > distance; at--) {
+                if (at < RANGING_MEASUREMENTS) {
+                    kept[at] = kept[at - 1];
+                    measurements[at] = measurements[at - 1];
+                }
+            }
+            if (at < RANGING_MEASUREMENTS) {
+                const mh_real error = 17.3f * (mh_random_unit(&noise) - 0.5f); /* uniform, standard deviation 5 m */
+                const struct mh_measurement taken = {.node = (mh_node_id)(10 * (i + 2) + j + 2),
+                                                     .place = node,
+                                                     .time = RANGING_INTERVAL * step,
+                                                     .value = distance + mh_q20_from_real(error)};
+                measurements[at] = taken;
+                kept[at] = distance;
+                count = (uint8_t)(count + (count < RANGING_MEASUREMENTS));
+            }
+        }
+    }
+}
