@@ -80,6 +80,8 @@ static void set_up_range(struct tracker_choice *choice, const struct scenario *s
     struct mh_range_config *config = &choice->config.range;
     mh_range_config_default(config);
     config->range_sd_m = (mh_real)target.range_sd_m;
+    config->bias_sd_m = (mh_real)scenario->tracker.bias_sd_m;
+    config->scale_sd = (mh_real)scenario->tracker.scale_sd;
     config->acceleration_sd_mps2 = (mh_real)target.acceleration_sd_mps2;
     config->speed_mps = (mh_real)target.speed_mps;
     config->height_m = (mh_real)target.height_m;

@@ -127,6 +127,8 @@ const struct scenario_key scenario_keys[] = {
     {"tracker.range_sd_m", KEY_NUMBER, AT(tracker.range_sd_m), "0", 0, 100, NULL, "range, pftl: assumed noise of a range; 0 for sensor.range_noise_m, or 0.3 in a replay"},
     {"tracker.acceleration_sd_mps2", KEY_NUMBER, AT(tracker.acceleration_sd_mps2), "0", 0, 1e3, NULL, "range: assumed acceleration of the target; 0 for that of its Gauss-Markov walk, or 1 where there is none"},
     {"tracker.height_m", KEY_NUMBER, AT(tracker.height_m), "1", -1e4, 1e4, NULL, "range: of the target in the nodes' frame, in a replay"},
+    {"tracker.bias_sd_m", KEY_NUMBER, AT(tracker.bias_sd_m), "0", 0, 100, NULL, "range: learn each anchor's bias, expected within this; 0 for none"},
+    {"tracker.scale_sd", KEY_NUMBER, AT(tracker.scale_sd), "0", 0, 0.5, NULL, "range: learn the scale of all ranges, expected within this share of 1"},
     {"tracker.speed_mps", KEY_NUMBER, AT(tracker.speed_mps), "0", 0, 1000, NULL, "pftl, msl, range: expected mean speed of the target; 0 for that of its path, or 1 in a replay"},
     {"tracker.speed_sd_mps", KEY_NUMBER, AT(tracker.speed_sd_mps), "0", 0, 1000, NULL, "pftl, msl: its standard deviation; 0 for that of its Gauss-Markov walk, or a fifth of the speed where there is none"},
     {"tracker.tolerance_m", KEY_NUMBER, AT(tracker.tolerance_m), "5", 0, 1000, NULL, "range, pftl: the sink is told when its own idea of the target is off by more than this"},

@@ -158,6 +158,7 @@ struct scenario {
         double forgetting;               /* luo */
         bool nonlinear;                  /* luo */
         double range_sd_m;               /* of a range; 0: the sensor's in a simulation, 0.3 of a recording */
+        double bias_sd_m, scale_sd;      /* range */
         double acceleration_sd_mps2;     /* range; 0: that of the target's walk, 1 where there is none */
         double height_m;                 /* range */
         double speed_mps, speed_sd_mps;  /* of the target, as the tracker knows it; 0: as it is */

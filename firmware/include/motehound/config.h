@@ -145,13 +145,24 @@
 #define MH_CLOCK_NEIGHBOURS 8
 #endif
 
-/* Anchors whose bias the tracker `range` can learn. The first ones it hears have it; further ones are taken for noisier. Each is a state of
- * its Kalman filter, so that eight cost 300 bytes of state and as many of stack, and time only where biases are learned. */
+/* What the tracker `range` can learn of its ranges: their scale and the biases of as many anchors less one. The first anchors it hears have
+ * it; further ones are taken for noisier. Each is a state of its Kalman filter, so that nine cost 340 bytes of state and as many of stack, and time
+ * only where they are learned. */
 #ifndef MH_RANGE_BIASES_MAX
 #ifdef __AVR__
 #define MH_RANGE_BIASES_MAX 0
 #else
-#define MH_RANGE_BIASES_MAX 8
+#define MH_RANGE_BIASES_MAX 9
+#endif
+#endif
+
+/* Anchors whose last range the tracker `range` keeps while it looks for a target, to start from at least three that were read one after the
+ * other. 32 bytes each. */
+#ifndef MH_RANGE_HEARD_MAX
+#ifdef __AVR__
+#define MH_RANGE_HEARD_MAX 3
+#else
+#define MH_RANGE_HEARD_MAX 8
 #endif
 #endif
 
@@ -210,6 +221,9 @@
 #endif
 #if MH_RANGE_BIASES_MAX < 0 || MH_RANGE_BIASES_MAX > 12
 #error "MH_RANGE_BIASES_MAX must be 0 to 12: the work of each range grows with its square"
+#endif
+#if MH_RANGE_HEARD_MAX < 3 || MH_RANGE_HEARD_MAX > 64
+#error "MH_RANGE_HEARD_MAX must be 3 to 64: a place in the plane needs three ranges"
 #endif
 #if MH_KALMAN_STATES_MAX < 4 + MH_RANGE_BIASES_MAX || MH_KALMAN_STATES_MAX > 16
 #error                                                                                                                 \

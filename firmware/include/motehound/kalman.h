@@ -33,6 +33,7 @@ struct mh_gate {
     mh_real sigmas;   /* > 0 */
     uint8_t patience; /* >= 0 */
     uint8_t refused;  /* so far in a row; starts at 0 */
+    mh_real surprise; /* of the last measurement: its innovation squared over the innovation's variance */
 };
 
 /* Begin at x with covariance P (packed). Errors: MH_ERR_ARGUMENT (n out of range), MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (P is not
@@ -59,6 +60,9 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
 
 /* The first `count` rows and columns of P, packed. */
 void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P);
+
+/* Element (i, i) of P. */
+mh_real mh_kalman_variance(const struct mh_kalman *filter, uint8_t i);
 
 /* P, packed. */
 static inline void mh_kalman_covariance(const struct mh_kalman *filter, mh_real *P)

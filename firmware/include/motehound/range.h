@@ -6,19 +6,23 @@
  * - Three or more ranges while the target moves less than a tenth of a range's standard deviation are one instant's: they become a position
  *   by maximum likelihood from the predicted one (range_fix.h), which is one linear measurement. If it lies outside the chi-square
  *   gate of 12, the target is manoeuvring: its velocity is taken to have changed by sqrt(2) x speed at the instant before.
- * - Fewer, or such as do not agree on a position, are taken one by one by an extended filter, one or two with the second-order terms of the
- *   range (Bar-Shalom, Li and Kirubarajan, 2001, Eqs. (10.3.2-4) and (10.3.2-7)): d + p / (2 d), variance p^2 / (2 d^2) for a variance p across
- *   the line of sight. A range that is off by more than three standard deviations of its innovation is refused. That cannot lock a
- *   lost filter out: after five instants in a row at which most ranges were refused the track starts again if it can, and after ten
- *   refusals in a row without an exception the next range is believed and the covariance widened to fit it (mh_gate).
+ * - Fewer, or such as do not agree on a position, are taken one by one by an extended filter, where the circle bends by more than the noise
+ *   with the second-order terms of the range (Bar-Shalom, Li and Kirubarajan, 2001, Eqs. (10.3.2-4) and (10.3.2-7)): d + p / (2 d), variance
+ *   p^2 / (2 d^2) for a variance p across the line of sight. A range that is off by more than three standard deviations of its innovation is
+ *   refused, unless a manoeuvre as above would explain it.
+ * - A lost filter is not locked out: when the last 20 or so of these innovations were more than 2.8 standard deviations (root mean square,
+ *   outliers counted as five) the track starts again if it can, and after ten refusals in a row without an exception the next range is
+ *   believed and the covariance widened to fit it (mh_gate).
  * - Ranges older than the newest taken, or later than the instant, are left out. They may be negative, as noise makes them.
  *
- * Biases (bias_sd_m > 0): the bias of each of the first MH_RANGE_BIASES_MAX anchors heard is a state of the filter, so that its
- * uncertainty is in the covariance of position; ranges are then taken one by one.
+ * Errors of the ranges (bias_sd_m, scale_sd > 0): a range is (1 + scale) distance + bias + noise, with one scale for all, for that is the
+ * radios' make, and a bias for each anchor. They are states of the filter, so that their uncertainty is in the covariance of position;
+ * ranges are then taken one by one. What was learned outlives a track that fell silent, not one that went astray.
  *
- * Start: where the sensors' range is known, at the centre of those that answer, and from there the maximum likelihood if there is one; else the
- * first instant with at least three ranges that agree on a place (multilateration.h, which states the ambiguity). At rest with a
- * standard deviation of 0.77 x speed. A track that has taken no range for 10 s and five intervals is dropped, and starts again so.
+ * Start: where the sensors' range is known, at the centre of those that answer, and from there the maximum likelihood if there is one; else
+ * as soon as the last ranges of at least three anchors, none older than 10 s, agree on a place (multilateration.h, which states the
+ * ambiguity). At rest with a standard deviation of 0.77 x speed. A track that has taken no range for 10 s and five intervals is
+ * dropped, and starts again so.
  *
  * What an estimate holds: `covariance` of position; `raw` equals position; `age` 0; `measurements` the ranges taken; `flags` STARTED,
  * COASTED and REFRESHED; `origin` an anchor heard at the start, with the target's height as z; mh_real resolves 1 mm 10 km from it.
@@ -27,7 +31,7 @@
  * the target reports.
  *
  * Cost of a step with 12 ranges of one instant: about 800 additions and multiplications, 60 roots and divisions (docs/costs.md). A saved track
- * takes 60 bytes; biases are not in it. */
+ * takes 60 bytes; what was learned of the ranges' errors is not in it. */
 #ifndef MOTEHOUND_RANGE_H
 #define MOTEHOUND_RANGE_H
 
@@ -42,8 +46,9 @@ struct mh_range_config {
      * bias of a radio does), their mean is no better than one of them: give sqrt(n) times the sensor's standard deviation.
      * Nominal 0.3: a UWB radio of 0.1 m whose error lasts about a second, read ten times a second. */
     mh_real range_sd_m;
-    /* Standard deviation of an anchor's constant bias, 0 to 100 m; nominal 0: none is learned. */
-    mh_real bias_sd_m;
+    /* Standard deviations of an anchor's constant bias, 0 to 100 m, and of the scale of all ranges, as a share, 0 to 0.5; nominal 0: it is
+     * right, and not learned. */
+    mh_real bias_sd_m, scale_sd;
     /* No sensor hears the target from farther away, 0 to 1e5 m; nominal 0: unknown. */
     mh_real sensing_range_m;
     /* Of the target: its velocity wanders by this much in 1 s, and with the square root of time; 1e-3 to 1e3 m/s2. Nominal 1: a
@@ -63,15 +68,18 @@ struct mh_range_config {
 struct mh_range {
     struct mh_range_config config;
     struct mh_kalman filter;
-    mh_node_id anchors[MH_KALMAN_STATES_MAX]; /* whose bias is state i, from 4 on */
+    mh_node_id anchors[MH_KALMAN_STATES_MAX]; /* whose bias is state i */
+    struct mh_measurement
+        heard[MH_RANGE_HEARD_MAX]; /* while there is no track: the last range of each anchor, in the order of time */
     struct mh_gate gate;
     struct mh_followed followed;
     struct mh_place origin;
     mh_tick interval;
-    mh_tick time;    /* of the last step */
-    mh_tick updated; /* the filter's time: of the last range taken */
-    uint8_t doubted; /* instants in a row at which most ranges were refused */
-    bool stepped;    /* `time` is set */
+    mh_tick time;     /* of the last step */
+    mh_tick updated;  /* the filter's time: of the last range taken */
+    mh_real surprise; /* mean of the last innovations, squared, in units of their variance */
+    uint8_t heard_count;
+    bool stepped; /* `time` is set */
     bool tracking;
 };
 

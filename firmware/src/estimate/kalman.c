@@ -160,11 +160,13 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
 static bool gate_passes(struct mh_gate *gate, struct mh_kalman *filter, mh_real *g, mh_real *predicted,
                         mh_real innovation, mh_real variance)
 {
-    const mh_real wanted = innovation * innovation / (gate->sigmas * gate->sigmas);
-    if (wanted <= *predicted + variance) {
+    const mh_real square = innovation * innovation;
+    const mh_real limit = gate->sigmas * gate->sigmas;
+    gate->surprise = square / (*predicted + variance);
+    if (gate->surprise <= limit) {
         return true;
     }
-    const mh_real factor = (wanted - variance) / *predicted;
+    const mh_real factor = (square / limit - variance) / *predicted;
     mh_real largest = 0;
     for (uint_fast8_t j = 0; j < filter->n; j++) {
         largest = mh_max(largest, filter->ud[MH_PACKED(j, j)]);
@@ -248,22 +250,29 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
     return MH_OK;
 }
 
+/* Element (i, j) of P, i <= j. */
+static mh_real element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j)
+{
+    mh_real sum = 0;
+    for (uint_fast8_t k = j; k < filter->n; k++) {
+        const mh_real *column = filter->ud + MH_PACKED(0, k);
+        const mh_real left = i == k ? 1.0f : column[i];
+        const mh_real right = j == k ? 1.0f : column[j];
+        sum += left * right * column[k];
+    }
+    return sum;
+}
+
 void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P)
 {
-    const uint8_t n = filter->n;
     for (uint_fast8_t j = 0; j < count; j++) {
         for (uint_fast8_t i = 0; i <= j; i++) {
-            mh_real sum = 0;
-            for (uint_fast8_t k = j; k < n; k++) {
-                const mh_real *column = filter->ud + MH_PACKED(0, k);
-                const mh_real left = i == k ? 1.0f : column[i];
-                const mh_real right = j == k ? 1.0f : column[j];
-                sum += left * right * column[k];
-            }
-            P[MH_PACKED(i, j)] = sum;
+            *P++ = element(filter, i, j);
         }
     }
 }
+
+mh_real mh_kalman_variance(const struct mh_kalman *filter, uint8_t i) { return element(filter, i, i); }
 
 void mh_kalman_constant_velocity(mh_real dt, mh_real intensity, mh_real *F, mh_real *Q)
 {

@@ -10,10 +10,12 @@
 #define LOST_TICKS (10 * (int32_t)MH_TICKS_PER_S)
 #define LOST_INTERVALS 5
 #define GATE_SIGMAS 3.0f
-#define GATE_PATIENCE 10   /* ranges */
-#define RESTART_PATIENCE 5 /* instants */
-#define GATE_OF_FIX 12.0f  /* chi-square with two degrees of freedom: 0.25 % */
-#define AT_ONCE 0.1f       /* of a standard deviation, which the target moves meanwhile */
+#define GATE_PATIENCE 10      /* ranges */
+#define SURPRISE_MEMORY 20.0f /* ranges */
+#define SURPRISE_CAP 25.0f
+#define SURPRISE_LOST 8.0f
+#define GATE_OF_FIX 12.0f /* chi-square with two degrees of freedom: 0.25 % */
+#define AT_ONCE 0.1f      /* of a standard deviation, which the target moves meanwhile */
 
 /* Variances of velocity, in squares of the usual speed: of a target that has just been found, and of one that manoeuvres */
 #define UNKNOWN 0.6f
@@ -31,6 +33,7 @@ void mh_range_config_default(struct mh_range_config *config)
 static bool valid(const struct mh_range_config *config)
 {
     return mh_within(config->range_sd_m, 1e-3f, 100.0f) && mh_within(config->bias_sd_m, 0, 100.0f) &&
+           mh_within(config->scale_sd, 0, MH_RANGE_BIASES_MAX > 0 ? 0.5f : 0) &&
            mh_within(config->sensing_range_m, 0, 1e5f) && mh_within(config->acceleration_sd_mps2, 1e-3f, 1e3f) &&
            mh_within(config->speed_mps, 1e-3f, 1e4f) && mh_within(config->height_m, -1e5f, 1e5f) &&
            mh_within(config->tolerance_m, 0, 1e5f);
@@ -77,104 +80,203 @@ static mh_real rise(const struct mh_range *range, const struct mh_measurement *m
     return range->config.height_m - (mh_real)m->place.z_mm * 0.001f;
 }
 
-/* How many ranges agree on a start; 0 for none. */
-static uint16_t start(struct mh_range *range, const struct mh_measurement *measurements, size_t count)
-{
-    if (count == 0) {
-        return 0;
-    }
-    const struct mh_range_config *config = &range->config;
-    const mh_real variance = mh_squared(config->range_sd_m) + mh_squared(config->bias_sd_m);
-    const mh_real sd = mh_sqrt(variance);
-    struct mh_place origin = measurements[0].place;
-    struct mh_fix place = {.agreeing = (uint16_t)count};
-    if (config->sensing_range_m > 0) {
-        struct mh_range_fix fix;
-        const mh_real spread = mh_squared(config->sensing_range_m) * 0.25f; /* of a disc, in each axis */
-        place.position = mh_range_centre(measurements, count, &origin);
-        place.covariance.xx = place.covariance.yy = spread;
-        if (mh_range_fix(measurements, count, &origin, config->height_m, sd, place.position, &fix) == MH_OK) {
-            const mh_real unit = variance / (fix.normal.xx * fix.normal.yy - mh_squared(fix.normal.xy));
-            place.position = fix.position;
-            place.covariance.xx = unit * fix.normal.yy;
-            place.covariance.xy = -unit * fix.normal.xy;
-            place.covariance.yy = unit * fix.normal.xx;
-        }
-    } else if (mh_multilaterate(measurements, count, &origin, config->height_m, sd, &place) != MH_OK) {
-        return 0;
-    }
-    const mh_real velocity = UNKNOWN * mh_squared(config->speed_mps);
-    const mh_real x[MOTION] = {place.position.x, place.position.y, 0, 0};
-    const mh_real P[MH_PACKED_SIZE(MOTION)] = {
-        place.covariance.xx, place.covariance.xy, place.covariance.yy, 0, 0, velocity, 0, 0, 0, velocity};
-    if (mh_kalman_init(&range->filter, MOTION, x, P) != MH_OK) {
-        return 0;
-    }
-    origin.z_mm = (int32_t)(config->height_m * 1000.0f);
-    range->origin = origin;
-    range->updated = measurements[count - 1].time;
-    range->gate.refused = 0;
-    range->doubted = 0;
-    range->followed.known = false;
-    return place.agreeing;
-}
+/* Which of the first `states` states are what is known of the errors of an anchor's ranges, (1 + scale) distance + bias; 0: none is. */
+struct errors {
+    uint8_t scale, bias;
+};
 
-/* The state of the bias of `node`, or 0: it has none. */
-static uint8_t bias_of(const struct mh_range *range, const struct mh_kalman *filter, mh_node_id node)
+static struct errors errors_of(const struct mh_range *range, uint8_t states, mh_node_id node)
 {
-    for (uint8_t i = MOTION; i < filter->n; i++) {
+    struct errors errors = {0, 0};
+    uint8_t i = MOTION;
+    if (range->config.scale_sd > 0 && i < states) {
+        errors.scale = i++;
+    }
+    for (; i < states; i++) {
         if (range->anchors[i] == node) {
-            return i;
+            errors.bias = i;
         }
     }
-    return 0;
+    return errors;
 }
 
-/* Take one range of the filter's time, `ticks` after the last that were taken, by itself; `alone`: there are not
- * enough of its instant to say where the target is across the line of sight. True if it was taken. */
-static bool take_one(struct mh_range *range, struct mh_kalman *filter, int32_t ticks, const struct mh_measurement *m,
-                     bool alone)
+/* Begin at `place`, at rest. What the first `states` states of the track before have learned of the ranges' errors stays. */
+static bool begin(struct mh_range *range, uint8_t states, const struct mh_place *origin, const struct mh_fix *place,
+                  mh_tick time)
+{
+    const struct mh_sym2 *covariance = &place->covariance;
+    const mh_real velocity = UNKNOWN * mh_squared(range->config.speed_mps);
+    const mh_real x[MOTION] = {place->position.x, place->position.y, 0, 0};
+    const mh_real P[MH_PACKED_SIZE(MOTION)] = {covariance->xx, covariance->xy, covariance->yy, 0, 0, velocity, 0, 0, 0,
+                                               velocity};
+    struct mh_kalman filter;
+    enum mh_status status = mh_kalman_init(&filter, MOTION, x, P);
+    if (states <= MOTION && range->config.scale_sd > 0 && status == MH_OK) {
+        status = mh_kalman_append(&filter, 0, mh_squared(range->config.scale_sd));
+    }
+    for (uint8_t i = MOTION; i < states && status == MH_OK; i++) {
+        status = mh_kalman_append(&filter, range->filter.x[i], mh_kalman_variance(&range->filter, i));
+    }
+    if (status != MH_OK) {
+        return false;
+    }
+    range->filter = filter;
+    range->origin = *origin;
+    range->origin.z_mm = (int32_t)(range->config.height_m * 1000.0f);
+    range->updated = time;
+    range->gate.refused = 0;
+    range->surprise = 1;
+    range->followed.known = false;
+    range->tracking = true;
+    return true;
+}
+
+/* Where the sensors that hear the target stand close to it: about their centre. */
+static bool start_among(struct mh_range *range, uint8_t states, const struct mh_measurement *m, size_t count)
+{
+    const struct mh_range_config *config = &range->config;
+    const struct mh_place origin = m[0].place;
+    const mh_real spread = mh_squared(config->sensing_range_m) * 0.25f; /* of a disc, in each axis */
+    struct mh_fix place = {.position = mh_range_centre(m, count, &origin), .covariance = {spread, 0, spread}};
+    struct mh_range_fix fix;
+    const mh_real variance = mh_squared(config->range_sd_m) + mh_squared(config->bias_sd_m);
+    if (mh_range_fix(m, count, &origin, config->height_m, mh_sqrt(variance), place.position, &fix) == MH_OK) {
+        const mh_real unit = variance / (fix.normal.xx * fix.normal.yy - mh_squared(fix.normal.xy));
+        place.position = fix.position;
+        place.covariance.xx = unit * fix.normal.yy;
+        place.covariance.xy = -unit * fix.normal.xy;
+        place.covariance.yy = unit * fix.normal.xx;
+    }
+    return begin(range, states, &origin, &place, m[count - 1].time);
+}
+
+/* Keep the last range of each anchor, of as many as there is room for, the newest last. */
+static void hear(struct mh_range *range, const struct mh_measurement *m)
+{
+    uint8_t at = 0;
+    while (at < range->heard_count && range->heard[at].node != m->node) {
+        at++;
+    }
+    if (at == MH_RANGE_HEARD_MAX) {
+        at = 0;
+    }
+    if (at == range->heard_count) {
+        range->heard_count++;
+    }
+    for (; at + 1 < range->heard_count; at++) {
+        range->heard[at] = range->heard[at + 1];
+    }
+    range->heard[at] = *m;
+}
+
+/* The range less what is known of its errors; *variance: of what is not. */
+static mh_q20 corrected(const struct mh_range *range, uint8_t states, const struct mh_measurement *m, mh_real *variance)
+{
+    const struct mh_kalman *filter = &range->filter;
+    const struct errors errors = errors_of(range, states, m->node);
+    mh_real value = mh_q20_to_real(m->value);
+    mh_real bias = mh_squared(range->config.bias_sd_m);
+    mh_real scale = mh_squared(range->config.scale_sd);
+    if (errors.bias > 0) {
+        value -= filter->x[errors.bias];
+        bias = mh_kalman_variance(filter, errors.bias);
+    }
+    if (errors.scale > 0) {
+        value /= 1.0f + filter->x[errors.scale];
+        scale = mh_kalman_variance(filter, errors.scale);
+    }
+    *variance = bias + scale * value * value;
+    return mh_q20_from_real(value);
+}
+
+/* Where the last ranges of the anchors agree on a place. */
+static bool start_anywhere(struct mh_range *range, uint8_t states)
+{
+    const struct mh_range_config *config = &range->config;
+    const mh_tick time = range->heard[range->heard_count - 1].time;
+    struct mh_measurement m[MH_RANGE_HEARD_MAX];
+    size_t count = 0;
+    mh_real largest = 0;
+    for (uint8_t i = 0; i < range->heard_count; i++) {
+        if (mh_ticks_between(range->heard[i].time, time) <= LOST_TICKS) {
+            mh_real variance;
+            m[count] = range->heard[i];
+            m[count].value = corrected(range, states, &m[count], &variance);
+            largest = mh_max(largest, variance);
+            count++;
+        }
+    }
+    const mh_real moved = config->speed_mps * mh_seconds_between(m[0].time, time);
+    const mh_real sd = mh_sqrt(mh_squared(config->range_sd_m) + mh_squared(moved) + largest);
+    const struct mh_place origin = m[0].place;
+    struct mh_fix place;
+    return mh_multilaterate(m, count, &origin, config->height_m, sd, &place) == MH_OK &&
+           begin(range, states, &origin, &place, time);
+}
+
+/* The gradient of the anchor's range where the filter has the target, and what it predicts; a bias that is new gets its state. */
+static mh_real with_errors(struct mh_range *range, struct mh_kalman *filter, mh_node_id node, mh_real distance,
+                           mh_real *h, mh_real *variance)
+{
+    const mh_real bias = mh_squared(range->config.bias_sd_m);
+    struct errors errors = errors_of(range, filter->n, node);
+    if (errors.bias == 0 && bias > 0) {
+        if (mh_kalman_append(filter, 0, bias) == MH_OK) {
+            errors.bias = (uint8_t)(filter->n - 1);
+            range->anchors[errors.bias] = node;
+        } else {
+            *variance += bias;
+        }
+    }
+    mh_real predicted = distance;
+    if (errors.scale > 0) {
+        const mh_real scale = filter->x[errors.scale];
+        predicted += scale * distance;
+        h[0] += scale * h[0];
+        h[1] += scale * h[1];
+        h[errors.scale] = distance;
+    }
+    if (errors.bias > 0) {
+        predicted += filter->x[errors.bias];
+        h[errors.bias] = 1;
+    }
+    return predicted;
+}
+
+/* Take one range of the filter's time, `ticks` after the last that were taken, by itself. True if it was taken. */
+static bool take_one(struct mh_range *range, struct mh_kalman *filter, int32_t ticks, const struct mh_measurement *m)
 {
     const struct mh_range_config *config = &range->config;
     const struct mh_vec2 position = {filter->x[0], filter->x[1]};
-    mh_real predicted;
+    mh_real distance;
     struct mh_vec2 u;
-    if (mh_range_model(position, mh_place_relative(&m->place, &range->origin), rise(range, m), &predicted, &u) !=
+    if (mh_range_model(position, mh_place_relative(&m->place, &range->origin), rise(range, m), &distance, &u) !=
         MH_OK) {
         return false;
     }
     mh_real P[MH_PACKED_SIZE(2)];
     mh_kalman_covariance_of(filter, 2, P);
     const mh_real along = P[0] * u.x * u.x + 2.0f * P[1] * u.x * u.y + P[2] * u.y * u.y;
-    const mh_real bend = alone ? (P[0] + P[2] - along) / (2.0f * predicted) : 0;
+    mh_real bend = (P[0] + P[2] - along) / (2.0f * distance);
+    if (bend < config->range_sd_m) {
+        bend = 0;
+    }
     mh_real h[MH_KALMAN_STATES_MAX] = {u.x, u.y};
     mh_real variance = mh_squared(config->range_sd_m) + 2.0f * bend * bend;
-    mh_real innovation = mh_q20_to_real(m->value) - predicted - bend;
-    if (config->bias_sd_m > 0) {
-        const uint8_t state = bias_of(range, filter, m->node);
-        if (state > 0) {
-            h[state] = 1;
-            innovation -= filter->x[state];
-        } else if (mh_kalman_append(filter, 0, mh_squared(config->bias_sd_m)) == MH_OK) {
-            const uint8_t added = (uint8_t)(filter->n - 1);
-            h[added] = 1;
-            range->anchors[added] = m->node;
-        } else {
-            variance += mh_squared(config->bias_sd_m);
+    const mh_real predicted = with_errors(range, filter, m->node, distance, h, &variance);
+    const mh_real innovation = mh_q20_to_real(m->value) - predicted - bend;
+    enum mh_status status = mh_kalman_update(filter, h, innovation, variance, &range->gate);
+    if (status == MH_NONE) {
+        /* what the gate refuses and a manoeuvre would explain is one */
+        const mh_real moved = config->speed_mps * mh_seconds_between(0, (mh_tick)ticks);
+        const mh_real explained = along + variance + MANOEUVRE * moved * moved;
+        if (innovation * innovation <= GATE_SIGMAS * GATE_SIGMAS * explained &&
+            manoeuvre(range, filter, ticks) == MH_OK) {
+            return mh_kalman_update(filter, h, innovation, variance, NULL) == MH_OK;
         }
     }
-    if (mh_kalman_update(filter, h, innovation, variance, &range->gate) == MH_OK) {
-        return true;
-    }
-    /* what the gate refuses and a manoeuvre would explain is one */
-    const mh_real moved = config->speed_mps * mh_seconds_between(0, (mh_tick)ticks);
-    const mh_real explained = along + variance + MANOEUVRE * moved * moved;
-    if (innovation * innovation > GATE_SIGMAS * GATE_SIGMAS * explained || manoeuvre(range, filter, ticks) != MH_OK ||
-        mh_kalman_update(filter, h, innovation, variance, NULL) != MH_OK) {
-        return false;
-    }
-    range->gate.refused = 0;
-    return true;
+    range->surprise += (mh_min(range->gate.surprise, SURPRISE_CAP) - range->surprise) * (1.0f / SURPRISE_MEMORY);
+    return status == MH_OK;
 }
 
 /* Take the position on which ranges of the filter's time agree, `ticks` after the last that were taken. */
@@ -227,7 +329,7 @@ static uint16_t take(struct mh_range *range, const struct mh_measurement *m, siz
         return 0;
     }
     uint16_t taken = 0;
-    if (count >= 3 && range->config.bias_sd_m <= 0) {
+    if (count >= 3 && range->config.bias_sd_m <= 0 && range->config.scale_sd <= 0) {
         struct mh_kalman fixed = next;
         if (take_fix(range, &fixed, ticks, m, count) == MH_OK) {
             next = fixed;
@@ -236,7 +338,7 @@ static uint16_t take(struct mh_range *range, const struct mh_measurement *m, siz
     }
     if (taken == 0) {
         for (size_t i = 0; i < count; i++) {
-            taken = (uint16_t)(taken + (take_one(range, &next, ticks, &m[i], count < 3) ? 1 : 0));
+            taken = (uint16_t)(taken + (take_one(range, &next, ticks, &m[i]) ? 1 : 0));
         }
     }
     if (taken > 0) {
@@ -326,20 +428,17 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     if (range->tracking && idle > LOST_TICKS && (mh_tick)idle > LOST_INTERVALS * range->interval) {
         range->tracking = false;
     }
-    uint16_t taken = 0;
-    bool started = false;
-    if (range->tracking) {
-        taken = take_all(range, measurements, count);
-        if (count > 0) {
-            range->doubted = 2u * taken >= count ? 0 : (uint8_t)(range->doubted + (range->doubted < RESTART_PATIENCE));
-        }
+    const bool among = range->config.sensing_range_m > 0;
+    for (size_t i = 0; i < count && !among; i++) {
+        hear(range, &measurements[i]);
     }
-    if (!range->tracking || range->doubted == RESTART_PATIENCE) {
-        const uint16_t agreeing = start(range, measurements, count);
-        if (agreeing > 0) {
-            range->tracking = started = true;
-            taken = agreeing;
-        }
+    uint16_t taken = range->tracking ? take_all(range, measurements, count) : 0;
+    bool started = false;
+    const bool lost = range->surprise > SURPRISE_LOST;
+    if (count > 0 && (!range->tracking || lost)) {
+        const uint8_t states = lost ? 0 : range->filter.n; /* what a track that went astray has learned is wrong */
+        started = among ? start_among(range, states, measurements, count) : start_anywhere(range, states);
+        taken = started ? (uint16_t)count : taken;
     }
     const enum mh_status status = predict(range, time, estimate);
     if (status == MH_OK) {
@@ -460,9 +559,13 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
         mh_followed_report(&followed, reported, mh_place_relative(&stored, &place), stored_velocity) != MH_OK) {
         return MH_ERR_CORRUPT;
     }
+    if (range->config.scale_sd > 0 && mh_kalman_append(&filter, 0, mh_squared(range->config.scale_sd)) != MH_OK) {
+        return MH_ERR_ARGUMENT;
+    }
     place.z_mm = (int32_t)(range->config.height_m * 1000.0f);
     range->origin = place;
     range->filter = filter;
+    range->surprise = 1;
     range->followed = followed;
     range->time = range->updated = updated;
     range->stepped = range->tracking = true;

@@ -47,8 +47,9 @@ static enum mh_status step(mh_tick time, size_t count)
 
 static void assert_at(mh_real tolerance, mh_real x, mh_real y)
 {
-    TEST_ASSERT_FLOAT_WITHIN(tolerance, x, estimate.position.x);
-    TEST_ASSERT_FLOAT_WITHIN(tolerance, y, estimate.position.y);
+    const struct mh_vec2 origin = mh_place_relative(&estimate.origin, &anchors[0]);
+    TEST_ASSERT_FLOAT_WITHIN(tolerance, x, origin.x + estimate.position.x);
+    TEST_ASSERT_FLOAT_WITHIN(tolerance, y, origin.y + estimate.position.y);
 }
 
 /* from (2, 3) at (1.5, -0.5) m/s, the clock wrapping on the way; the anchors are read one after the other, 20 ms apart */
