@@ -21,6 +21,7 @@ enum {
     EVENT_END,       /* a flight ends */
     EVENT_NO_ACK,    /* a mote has waited long enough */
     EVENT_ACK_START, /* a mote begins to acknowledge */
+    EVENT_DOZE,      /* a mote has been open long enough for what could be repeated */
     EVENT_POWER_ON,  /* three of radio_power, in its order */
     EVENT_POWER_ASLEEP,
     EVENT_POWER_OFF
@@ -186,7 +187,8 @@ static void show(const struct run *run, uint32_t index)
                                    : !radio_mote_listens(mote) && mote->caught == 0       ? RADIO_SLEEP
                                    : mote->signals > 0                                    ? RADIO_RECEIVE
                                                                                           : RADIO_LISTEN;
-    const uint8_t own = mote->ack ? mote->ack_cause : mote->mac ? mote->mac_cause : 0;
+    const bool attends = mote->attends && mote->power == RADIO_POWER_ASLEEP;
+    const uint8_t own = mote->ack ? mote->ack_cause : mote->mac ? mote->mac_cause : attends ? mote->attends_cause : 0;
     const uint8_t cause = state == RADIO_RECEIVE ? mote->signal_cause : own;
     if (state != mote->shown || (cause != mote->shown_cause && state != RADIO_RECEIVE)) {
         mote->shown = (uint8_t)state;
@@ -229,6 +231,34 @@ static void enter_ack(const struct run *run, uint32_t index, enum ack_state stat
     show(run, index);
 }
 
+/* A frame to a mote that may sleep has ended. If it has it not, or its acknowledgement is lost, it will be repeated. */
+static void attend(const struct run *run, uint32_t index, uint8_t cause)
+{
+    struct radio *radio = run->radio;
+    struct radio_mote *mote = &radio->motes[index];
+    if (radio->config.wake_length == 0 || mote->power != RADIO_POWER_ASLEEP) {
+        return;
+    }
+    if (!radio_mote_listens(mote)) {
+        mote->awake = run->now;
+    }
+    mote->attends = run->now + radio->config.wake_length;
+    mote->attends_cause = cause;
+    push(radio, mote->attends, EVENT(EVENT_DOZE, index));
+    open_or_close(run, index);
+    show(run, index);
+}
+
+static void doze(const struct run *run, uint32_t index)
+{
+    struct radio_mote *mote = &run->radio->motes[index];
+    if (mote->attends == run->now) {
+        mote->attends = 0;
+        open_or_close(run, index);
+        show(run, index);
+    }
+}
+
 /* ---- those in reach ---- */
 
 /* All that may hear a transmission, which started at `start`, begin or cease to receive it. */
@@ -269,6 +299,10 @@ static bool deliver(const struct run *run, const struct flight *flight, const st
             radio->found[received++] = receivers[i];
         } else {
             radio->counters.lost[reason]++;
+        }
+        if (meetings && flight->destination != RADIO_ALL &&
+            (reason == LOSS_NONE || reason == LOSS_RANDOM || reason == LOSS_COLLISION)) {
+            attend(run, receivers[i], flight->cause);
         }
     }
     if (received > 0 && frame.taken) {
@@ -608,6 +642,7 @@ static void drop_all(struct radio *radio, struct radio_mote *mote)
     mote->queued = 0;
     mote->mac = MAC_IDLE;
     mote->ack = ACK_NONE;
+    mote->attends = 0;
 }
 
 static void switch_power(const struct run *run, uint32_t index, enum radio_power power)
@@ -655,6 +690,9 @@ static void happen(const struct run *run, uint32_t content)
         break;
     case EVENT_ACK_START:
         ack_starts(run, index);
+        break;
+    case EVENT_DOZE:
+        doze(run, index);
         break;
     default:
         switch_power(run, index, (enum radio_power)((content >> 28) - EVENT_POWER_ON));

@@ -9,7 +9,8 @@
  * Each frame is judged so by itself: of two that overlap the stronger one is received if it is stronger by the capture ratio, whichever came
  * first. Transmissions that arrive more than 10 dB below the noise floor are not felt. A frame sent to one is acknowledged and repeated if the
  * acknowledgement does not come, also if it was the acknowledgement that was lost: the addressee's radio knows a frame by its number and hands it over once.
- * A radio that sleeps may open for a short window once in a period: what begins then it receives to its end, and acknowledges.
+ * A radio that sleeps may open for a short window once in a period: what begins then it receives to its end, and acknowledges. The one radio that a
+ * frame is sent to stays open after it for as long as a window, for the frame to be repeated or another to follow.
  * Profile `ideal` knows none of this: a frame goes out at once and all in range hear it; one that is sent to one needs no
  * acknowledgement, and a radio's frames follow each other without a gap.
  *

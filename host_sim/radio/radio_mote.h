@@ -11,6 +11,7 @@ struct radio_mote {
     sim_time due;         /* of the event that the MAC waits for: others are out of date */
     sim_time awake;       /* listens since, if it does */
     sim_time powered;     /* since when it has not been off */
+    sim_time attends;     /* though it may sleep it stays open until then; 0: it does not */
     uint32_t first, last; /* of its queue; NONE, NONE: empty */
     struct csma csma;
     uint32_t flight; /* being sent, frame or acknowledgement */
@@ -18,14 +19,15 @@ struct radio_mote {
     uint16_t queued;
     uint16_t signals; /* that arrive above the sensitivity, if states are shown ... */
     uint16_t caught;  /* ... of these, begun in a wake window */
-    uint8_t power, mac, ack, mac_cause, ack_cause, signal_cause;
+    uint8_t power, mac, ack, mac_cause, ack_cause, signal_cause, attends_cause;
     uint8_t shown, shown_cause; /* as last told */
 };
 
-/* Without regard to wake windows. */
+/* Without regard to a wake window that opens by itself. */
 static inline bool radio_mote_listens(const struct radio_mote *mote)
 {
-    return mote->power == RADIO_POWER_ON || (mote->power == RADIO_POWER_ASLEEP && (mote->mac || mote->ack));
+    return mote->power == RADIO_POWER_ON ||
+           (mote->power == RADIO_POWER_ASLEEP && (mote->mac || mote->ack || mote->attends));
 }
 
 /* A radio that sleeps is open. */

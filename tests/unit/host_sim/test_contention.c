@@ -473,7 +473,8 @@ static void who_sleeps_hears_what_begins_in_a_window(void)
     TEST_ASSERT_EQUAL_UINT(3, told.heard[2]); /* awake */
 }
 
-/* It receives to the end, long after the window, acknowledges, and sleeps again; windows without a frame are no changes. */
+/* It receives to the end, long after the window, acknowledges, is open for as long as a window from the frame's end, and sleeps again; windows without
+ * a frame are no changes. */
 static void who_is_woken_acknowledges(void)
 {
     const struct radio_config config = waking(at_once(disc("802154")));
@@ -488,10 +489,34 @@ static void who_is_woken_acknowledges(void)
     TEST_ASSERT_EQUAL_UINT(WAKE_PERIOD + 9999 + 1440 + 192 + 352, told.last_sent);
     TEST_ASSERT_TRUE(time_in(1, RADIO_RECEIVE, 8 * WAKE_PERIOD) == 1440);
     TEST_ASSERT_TRUE(time_in(1, RADIO_TRANSMIT, 8 * WAKE_PERIOD) == 352);
-    TEST_ASSERT_TRUE(time_in(1, RADIO_LISTEN, 8 * WAKE_PERIOD) == 192);
-    TEST_ASSERT_TRUE(time_in(1, RADIO_SLEEP, 8 * WAKE_PERIOD) == 8 * WAKE_PERIOD - 1440 - 352 - 192);
+    TEST_ASSERT_TRUE(time_in(1, RADIO_LISTEN, 8 * WAKE_PERIOD) == WAKE_LENGTH - 352);
+    TEST_ASSERT_TRUE(time_in(1, RADIO_SLEEP, 8 * WAKE_PERIOD) == 8 * WAKE_PERIOD - 1440 - WAKE_LENGTH);
     TEST_ASSERT_TRUE(time_in(2, RADIO_RECEIVE, 8 * WAKE_PERIOD) == 1440); /* not the acknowledgement */
     TEST_ASSERT_TRUE(time_in(2, RADIO_SLEEP, 8 * WAKE_PERIOD) == 8 * WAKE_PERIOD - 1440);
+}
+
+/* Tries begin at 5,000, 7,624 and 10,248 us of the window; a hidden mote's frame, from 5,000 to 8,680 us, spoils the first two. */
+static void who_is_woken_waits_for_the_repetition(void)
+{
+    const struct radio_config config = waking(at_once(disc("802154")));
+    const double x_m[] = {0, 90, 180};
+    make(&config, x_m, 3);
+    radio_power(&radio, 0, 1, RADIO_POWER_ASLEEP);
+    send(WAKE_PERIOD + 5000 - 320, 0, 1, 30);
+    send(WAKE_PERIOD + 5000 - 320, 2, RADIO_ALL, 100);
+    run(WAKE_PERIOD + 15000);
+    TEST_ASSERT_EQUAL_UINT(1, told.heard[1]);
+    TEST_ASSERT_EQUAL_UINT(3, told.on_air[0]);
+    TEST_ASSERT_EQUAL_UINT(1, told.outcomes[0][MH_SENT_OK]);
+    TEST_ASSERT_EQUAL_UINT(WAKE_PERIOD + 10248 + 1440 + 192 + 352, told.last_sent);
+    /* 10 ms after it another frame is too late */
+    send(WAKE_PERIOD + 10248 + 1440 + WAKE_LENGTH - 1 - 320, 0, 1, 30);
+    run(2 * WAKE_PERIOD);
+    TEST_ASSERT_EQUAL_UINT(2, told.heard[1]);
+    send(2 * WAKE_PERIOD + 9000 - 320, 0, 1, 30);
+    send(2 * WAKE_PERIOD + 9000 + 1440 + WAKE_LENGTH - 320, 0, RADIO_ALL, 30);
+    run(3 * WAKE_PERIOD);
+    TEST_ASSERT_EQUAL_UINT(3, told.heard[1]);
 }
 
 static unsigned begun_in_windows;
@@ -667,6 +692,7 @@ int main(void)
     RUN_TEST(states_add_up);
     RUN_TEST(who_sleeps_hears_what_begins_in_a_window);
     RUN_TEST(who_is_woken_acknowledges);
+    RUN_TEST(who_is_woken_waits_for_the_repetition);
     RUN_TEST(windows_are_heard_in_their_share);
     RUN_TEST(runs_are_repeatable);
     RUN_TEST(random_life);
