@@ -509,12 +509,12 @@ static void who_is_woken_waits_for_the_repetition(void)
     TEST_ASSERT_EQUAL_UINT(3, told.on_air[0]);
     TEST_ASSERT_EQUAL_UINT(1, told.outcomes[0][MH_SENT_OK]);
     TEST_ASSERT_EQUAL_UINT(WAKE_PERIOD + 10248 + 1440 + 192 + 352, told.last_sent);
-    /* 10 ms after it another frame is too late */
-    send(WAKE_PERIOD + 10248 + 1440 + WAKE_LENGTH - 1 - 320, 0, 1, 30);
+    /* another frame is heard if it is over 10 ms after the end of the last one to this mote, but not a microsecond later */
+    send(WAKE_PERIOD + 10248 + 1440 + WAKE_LENGTH - 1440 - 1 - 320, 0, RADIO_ALL, 30);
     run(2 * WAKE_PERIOD);
     TEST_ASSERT_EQUAL_UINT(2, told.heard[1]);
     send(2 * WAKE_PERIOD + 9000 - 320, 0, 1, 30);
-    send(2 * WAKE_PERIOD + 9000 + 1440 + WAKE_LENGTH - 320, 0, RADIO_ALL, 30);
+    send(2 * WAKE_PERIOD + 9000 + 1440 + WAKE_LENGTH - 1440 + 1 - 320, 0, RADIO_ALL, 30);
     run(3 * WAKE_PERIOD);
     TEST_ASSERT_EQUAL_UINT(3, told.heard[1]);
 }
