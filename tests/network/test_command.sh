@@ -95,6 +95,17 @@ grep -q position_rmse_m replayed/summary.json || complain "no errors with a trut
 [ "$(head -1 replayed/track.csv | cut -d, -f1-10)" = run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m ] ||
     complain "columns of track.csv"
 
+# clusters: what the sink has is never farther from the head's position than the tolerance; of two scenarios one has frames
+followed=(--set tracker.name=pftl --set source.duration_s=400 --seed 1)
+accepted "$MOTEHOUND" run zhou_nominal "${followed[@]}" --out followed
+[ "$(head -1 followed/track.csv | cut -d, -f20-23)" = flags,head,sink_x_m,sink_y_m ] || complain "last columns of track.csv"
+[ "$(wc -l <followed/track.csv)" = 202 ] || complain "positions at 201 instants: $(wc -l <followed/track.csv)"
+awk -F, 'NR > 1 && ($22 == "" || ($22 - $4) ^ 2 + ($23 - $5) ^ 2 > 25.001) { exit 1 }' followed/track.csv || complain "the sink is off by more than the tolerance"
+accepted "$MOTEHOUND" run zhou_real "${followed[@]}" --out followed
+grep -q '"sink_error_rs"' followed/summary.json || complain "nothing at the sink"
+refused '^tracker.name: .luo' "$MOTEHOUND" run zhou_nominal --set tracker.name=luo
+refused 'network.ideal: expected false where there are faults' "$MOTEHOUND" run zhou_nominal --set faults.dead_share=0.1
+
 # the same bytes whatever the jobs, and for the same seeds whatever the runs before
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out one
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out two --jobs 2
