@@ -1,8 +1,8 @@
 #include "motehound/particles.h"
 
-#define EXPONENT_MAX 40.0f  /* the squares of so large weights still have a sum */
-#define EXPONENT_MIN -80.0f /* smaller ones are far from all that adds up to 1, and slow near the smallest number */
-#define LEAST_SUM 1.2e-38f  /* its reciprocal is finite */
+#define EXPONENT_MAX 40.0f    /* the squares of so large weights still have a sum */
+#define EXPONENT_MIN (-80.0f) /* smaller ones are far from all that adds up to 1, and slow near the smallest number */
+#define LEAST_SUM 1.2e-38f    /* its reciprocal is finite */
 
 void mh_particles_draw(struct mh_particles *particles, uint16_t from, const struct mh_sector *sector,
                        struct mh_random *random)
@@ -133,13 +133,14 @@ enum mh_status mh_particles_resample(struct mh_particles *particles, struct mh_r
     particles->weight[heaviest] += (mh_real)(count - marks);
     uint16_t place = 0;
     for (uint16_t i = 0; i < count; i++) {
-        for (; particles->weight[i] > 1.0f; particles->weight[i] -= 1.0f) {
+        while (particles->weight[i] > 1.0f) {
             while (particles->weight[place] > 0.0f) {
                 place++;
             }
             particles->x[place] = particles->x[i];
             particles->y[place] = particles->y[i];
             particles->weight[place] = 1.0f;
+            particles->weight[i] -= 1.0f;
         }
     }
     return MH_OK;

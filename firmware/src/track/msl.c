@@ -255,6 +255,7 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
     msl->time = time;
     msl->stepped = true;
     msl->restarted = false;
+    mh_random_init(&msl->random, msl->config.seed ^ time); /* no two heads draw the same */
     return MH_OK;
 }
 

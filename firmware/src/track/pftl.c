@@ -326,6 +326,7 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
     pftl->time = time;
     pftl->stepped = true;
     pftl->restarted = false;
+    mh_random_init(&pftl->random, pftl->config.seed ^ time); /* no two heads draw the same */
     pftl->moving = length == BYTES_MOVING;
     return MH_OK;
 }
