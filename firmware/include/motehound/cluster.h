@@ -140,10 +140,12 @@ struct mh_cluster_node {
 
     /* who has found the target, or is to relay that it is lost */
     mh_alert_t alert;
+    uint8_t finds; /* samples of a target that nobody seems to follow */
 
     /* head */
     bool everyone;           /* all who hear it are asked */
     bool afresh;             /* the first cluster of a track, or after a loss, is to be formed */
+    uint8_t last_answers;    /* in this cluster; UINT8_MAX: there was no instant yet */
     uint8_t misses;          /* instants in succession without an answer */
     uint8_t forms;           /* announcements to go */
     uint32_t heard;          /* bit k: member k has answered, or joined */

@@ -146,9 +146,24 @@ bool mh_cluster_contest(struct mh_cluster_node *c, const struct mh_cluster_of *o
 
 /* ---- an instant ---- */
 
+/* By the rule sacx all neighbours are asked where hardly more members than the least would be, or were at the last instant: to find out at this one
+ * first is too late, since who is not asked sleeps on. */
+static bool few_are_asked(const struct mh_cluster_node *c)
+{
+    const struct mh_election_config *election = &c->config->election;
+    const struct mh_place expected = {c->of.x_mm, c->of.y_mm, 0};
+    uint8_t covering = 0;
+    for (uint8_t i = 0; i < c->cluster.count; i++) {
+        covering = (uint8_t)(covering + mh_place_within(&c->cluster.members[i].place, &expected,
+                                                        (uint32_t)(election->sensing_range_m * 1000.0f)));
+    }
+    const uint8_t answers = covering < c->last_answers ? covering : c->last_answers;
+    return election->rule == MH_ELECTION_SACX && 2 * answers < 3 * election->least_answers;
+}
+
 static void send_ask(struct mh_cluster_node *c)
 {
-    const bool everyone = c->everyone || rule_is_scm(c->config->election.rule);
+    const bool everyone = c->everyone || rule_is_scm(c->config->election.rule) || few_are_asked(c);
     const struct mh_message message = {.kind = MH_MESSAGE_ASK,
                                        .as.ask = {.sender = (int32_t)c->node->id,
                                                   .track = (int32_t)c->of.track,
@@ -265,6 +280,7 @@ static void announce_soon(struct mh_cluster_node *c)
     c->forms = 2;
     c->heard = 0;
     c->everyone = c->cluster.count == 0;
+    c->last_answers = UINT8_MAX;
     c->afresh = false;
     mh_cluster_set(c, MH_CLUSTER_FORM, mh_cluster_window(c, 0));
 }
@@ -402,21 +418,19 @@ static void choose_members(struct mh_cluster_node *c, const struct mh_estimate *
     (void)mh_elect_members(&c->config->election, expected, candidates, found, &c->cluster);
 }
 
-/* Where the target was when the track was saved -> c->of, if the tracker knows. */
-static bool locate(struct mh_cluster_node *c, mh_tick time, struct mh_estimate *expected)
+/* Where the target is, and how it moves -> c->of. Returns false if it is nowhere. */
+static bool locate(struct mh_cluster_node *c, mh_tick time, const struct mh_place *origin, struct mh_vec2 position,
+                   struct mh_vec2 velocity)
 {
-    if (c->node->port->expect(c->node->context, time, expected) != MH_OK || !mh_finite(expected->position.x) ||
-        !mh_finite(expected->position.y) || !mh_finite(expected->velocity.x) || !mh_finite(expected->velocity.y)) {
+    if (!mh_finite(position.x) || !mh_finite(position.y) || !mh_finite(velocity.x) || !mh_finite(velocity.y)) {
         return false;
     }
-    expected->stored = expected->position;
-    expected->stored_velocity = expected->velocity;
-    const struct mh_place place = mh_place_from_offset(&expected->origin, expected->position);
+    const struct mh_place place = mh_place_from_offset(origin, position);
     c->of.time = time;
     c->of.x_mm = place.x_mm;
     c->of.y_mm = place.y_mm;
-    c->of.vx_mmps = mm_per_s(expected->velocity.x);
-    c->of.vy_mmps = mm_per_s(expected->velocity.y);
+    c->of.vx_mmps = mm_per_s(velocity.x);
+    c->of.vy_mmps = mm_per_s(velocity.y);
     return true;
 }
 
@@ -439,7 +453,8 @@ static void take_track(struct mh_cluster_node *c, const mh_hand_over_t *last)
     }
     struct mh_estimate expected;
     take_members(c, bytes);
-    if (locate(c, (mh_tick)last->time_ms, &expected)) {
+    if (c->node->port->expect(c->node->context, (mh_tick)last->time_ms, &expected) == MH_OK &&
+        locate(c, (mh_tick)last->time_ms, &expected.origin, expected.position, expected.velocity)) {
         choose_members(c, &expected);
     }
     c->counters.formed++;
@@ -481,15 +496,16 @@ void mh_cluster_hear_part(struct mh_cluster_node *c, mh_node_id from, const mh_h
 
 static void report(struct mh_cluster_node *c, const struct mh_estimate *estimate)
 {
+    const struct mh_place place = mh_place_from_offset(&estimate->origin, estimate->stored);
     struct mh_message message = {.kind = MH_MESSAGE_POSITION,
                                  .as.position = {.origin = (int32_t)c->node->id,
                                                  .track = (int32_t)c->of.track,
                                                  .generation = c->of.generation,
                                                  .time_ms = (int32_t)estimate->time,
-                                                 .x_mm = c->of.x_mm,
-                                                 .y_mm = c->of.y_mm,
-                                                 .vx_mmps = c->of.vx_mmps,
-                                                 .vy_mmps = c->of.vy_mmps}};
+                                                 .x_mm = place.x_mm,
+                                                 .y_mm = place.y_mm,
+                                                 .vx_mmps = mm_per_s(estimate->stored_velocity.x),
+                                                 .vy_mmps = mm_per_s(estimate->stored_velocity.y)}};
     mh_geographic_address(&message, c->node->id, mh_cluster_number(c), c->config->sink, &c->config->sink_place);
     c->counters.reports++;
     (void)mh_link_take(&c->link, &message); /* counts what it refuses */
@@ -555,17 +571,14 @@ void mh_cluster_closed(struct mh_cluster_node *c, mh_tick instant, const struct 
         return;
     }
     c->misses = 0;
+    c->last_answers = (uint8_t)(count < UINT8_MAX ? count : UINT8_MAX);
     c->counters.answered += is_among(measurements, count, c->node->id);
-    if (!estimate || !mh_finite(estimate->stored.x) || !mh_finite(estimate->stored.y) ||
-        !mh_finite(estimate->stored_velocity.x) || !mh_finite(estimate->stored_velocity.y)) {
+    /* the way ahead is that of what is stored, but by the rule sacx */
+    const bool own = c->config->election.rule == MH_ELECTION_SACX;
+    if (!estimate || !locate(c, instant, &estimate->origin, own ? estimate->position : estimate->stored,
+                             own ? estimate->velocity : estimate->stored_velocity)) {
         return;
     }
-    const struct mh_place place = mh_place_from_offset(&estimate->origin, estimate->stored);
-    c->of.time = instant;
-    c->of.x_mm = place.x_mm;
-    c->of.y_mm = place.y_mm;
-    c->of.vx_mmps = mm_per_s(estimate->stored_velocity.x);
-    c->of.vy_mmps = mm_per_s(estimate->stored_velocity.y);
     if (estimate->flags & MH_ESTIMATE_REFRESHED) {
         report(c, estimate);
     }

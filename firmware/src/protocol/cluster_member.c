@@ -9,6 +9,7 @@
 #define ANSWER_TRIES 2    /* beside what the radio does on its own */
 #define JOIN_SLOT 4       /* ticks between the members' answers to a form_t */
 #define ALERT_WINDOWS 5   /* over which those who have found the target spread */
+#define FINDS_ENOUGH 3    /* samples of a target far off, after which it needs no other */
 #define SILENT_INSTANTS 2 /* after which a head counts as dead */
 
 static mh_tick interval_of(const struct mh_cluster_node *c) { return c->config->election.interval; }
@@ -47,6 +48,7 @@ static bool hear_of(struct mh_cluster_node *c, const struct mh_cluster_of *other
     c->of = *other;
     c->knows = true;
     c->search_until = c->time;
+    c->finds = 0;
     mh_cluster_clear(c, MH_CLUSTER_TAKE_OVER);
     if (!c->alert.lost) {
         mh_cluster_clear(c, MH_CLUSTER_ALERT);
@@ -233,6 +235,14 @@ static void found(struct mh_cluster_node *c, const struct mh_measurement *measur
     mh_cluster_set(c, MH_CLUSTER_ALERT, alert_time(c, measurement->value));
 }
 
+/* A head within reach of the target is within reach of the radio. */
+static bool is_near(const struct mh_cluster_node *c, const struct mh_measurement *measurement)
+{
+    const struct mh_election_config *election = &c->config->election;
+    return mh_q20_to_real(measurement->value) + election->sensing_range_m <= 0.9f * election->radio_range_m;
+}
+
+/* Who measures the target from far may only be too far from its head: he waits and sees whether others find it. */
 static void sampled_unasked(struct mh_cluster_node *c, const struct mh_measurement *measurement)
 {
     if (!c->node->is_head || mh_cluster_is_set(c, MH_CLUSTER_ALERT) || mh_cluster_is_set(c, MH_CLUSTER_TAKE_OVER)) {
@@ -241,7 +251,10 @@ static void sampled_unasked(struct mh_cluster_node *c, const struct mh_measureme
     if (c->role == MH_CLUSTER_MEMBER && !heard_within(c, c->time, SILENT_INSTANTS - 1)) {
         mh_cluster_set(c, MH_CLUSTER_TAKE_OVER, mh_cluster_window(c, c->rank));
     } else if (!heard_within(c, measurement->time, SILENT_INSTANTS)) {
-        found(c, measurement);
+        c->finds++;
+        if (c->finds >= FINDS_ENOUGH || is_near(c, measurement)) {
+            found(c, measurement);
+        }
     }
 }
 
