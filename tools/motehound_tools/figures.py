@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import LinearSegmentedColormap, PowerNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from .field import concentration
 from .metrics import errors, normalised
@@ -222,12 +222,19 @@ def plain_log(axes: Axes, which: str) -> None:
     (axes.set_xscale if which == "x" else axes.set_yscale)("log")
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+    if which == "y":  # where there is room for them
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+
+
+INSTANTS = 400  # of a picture; more are put together
 
 
 def over_time(track: dict[str, Array], values: Array) -> tuple[Array, Array]:
     """Times at which at least one estimate has a value, and the 5, 25, 50, 75, 95 % quantiles there [5][time]."""
     known = np.isfinite(values)
     times, index = np.unique(track["time_s"][known], return_inverse=True)
+    together = 4 * len(times) // INSTANTS if len(times) > INSTANTS else 1
+    times, index = times[::together] if together > 1 else times, index // together
     order = np.argsort(index, kind="stable")
     groups = np.split(values[known][order], np.cumsum(np.bincount(index))[:-1]) if len(times) else []
     return times, np.array([np.percentile(g, [5, 25, 50, 75, 95]) for g in groups]).reshape(-1, 5).T
@@ -269,6 +276,9 @@ def error_picture(output: Output) -> Picture | None:
     raw_times, raw = over_time(output.track, errors(output.track, "raw_"))
     if len(raw_times) and not (len(raw_times) == len(times) and np.allclose(raw, quantiles)):
         axes.plot(raw_times, np.maximum(raw[2], floor), color=RAW, linewidth=1.0, label="before the filter, median")
+    sink_times, sink = over_time(output.track, errors(output.track, "sink_"))
+    if len(sink_times):
+        axes.plot(sink_times, np.maximum(sink[2], floor), color=RAW, linewidth=1.0, label="at the sink, median")
     stated_times, stated = over_time(output.track, output.track["sd_m"])
     if len(stated_times):
         # The median of a plane error whose coordinates have this standard deviation.
@@ -336,7 +346,8 @@ STATES = {
     "sleep": ("sleeping", "#e1e5ea"),
 }
 CAUSES = {
-    "localisation": ("sampling, computing and asking", "#009e73"),
+    "localisation": ("sampling and computing", "#009e73"),
+    "measuring": ("asking and answering", "#56b4e9"),
     "clustering": ("clusters", "#cc79a7"),
     "reporting": ("carrying reports", "#0072b2"),
     "routing": ("finding ways and neighbours", "#d55e00"),
@@ -380,10 +391,11 @@ def energy_picture(output: Output) -> Picture | None:
     bars = [(parts("energy_mj_state_", STATES), "By state, J"), (by_cause, "By cause, J")]
     if for_something and len(for_something) < len(by_cause):
         bars.append((for_something, "By cause, without idling, J"))
-    figure, rows = pyplot.subplots(len(bars), 1, figsize=(6.4, 1.6 * len(bars)), squeeze=False, layout="constrained")
+    figure, rows = pyplot.subplots(len(bars), 1, figsize=(6.4, 2.0 * len(bars)), squeeze=False, layout="constrained")
+    figure.get_layout_engine().set(hspace=0.14)
     for axes, (bar, title) in zip(rows[:, 0], bars):
         stack(axes, bar, title)
-    said = f"All motes but the one on mains used {total:,.4g} J a run."
+    said = f"All motes but the one on mains used {total:,.{0 if total >= 100.0 else 2}f} J a run."
     lifetime = output.statistic("lifetime_s")
     if np.isfinite(lifetime):
         said += f" The first battery was empty after {lifetime:,.4g} s."
@@ -403,6 +415,7 @@ def losses_picture(output: Output) -> Picture | None:
     bars = axes.barh(names, list(known.values()), color=colours, height=0.65)
     axes.bar_label(bars, labels=[f"{count:,.0f}" for count in known.values()], padding=4)
     axes.invert_yaxis()
+    axes.set_axisbelow(True)
     axes.margins(x=0.14)
     axes.grid(axis="y", visible=False)
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))

@@ -14,7 +14,10 @@ from .failure import Failure
 from .scenario import Array, Scenario
 
 TRACK_COLUMNS = ("run", "target", "time_s", "x_m", "y_m", "raw_x_m", "raw_y_m", "sd_m", "true_x_m", "true_y_m")
-OPTIONAL_COLUMNS = ("vx_mps", "vy_mps", "cov_xx_m2", "cov_xy_m2", "cov_yy_m2", "measurements", "arrival_time_s")
+OPTIONAL_COLUMNS = (
+    *("vx_mps", "vy_mps", "cov_xx_m2", "cov_xy_m2", "cov_yy_m2", "measurements", "arrival_time_s"),
+    *("head", "sink_x_m", "sink_y_m"),
+)
 STATISTICS = ("mean", "std", "median", "p95", "n")
 
 
@@ -110,6 +113,11 @@ class Output:
     def one_run(self, run: int) -> dict[str, Array]:
         chosen = self.track["run"] == run
         return {name: column[chosen] for name, column in self.track.items()}
+
+    @property
+    def is_ranged(self) -> bool:
+        """Whether the motes of a simulation measure how far the target is."""
+        return bool(self.scenario) and self.scenario.sections.get("sensor", {}).get("quantity") == "range"
 
     @property
     def skip_first(self) -> int:

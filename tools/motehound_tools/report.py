@@ -11,7 +11,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from . import figures, output, sweep_figures
+from . import figures, output, ranged_figures, sweep_figures
 from .failure import Failure
 from .figures import Picture
 from .output import Output, Sweep
@@ -27,6 +27,20 @@ MEANING = {
     "track_lost": "1 if the track was lost, 0 if not",
     "nees_median": "median normalised squared error (1.39 is exact)",
     "estimates": "positions that the head reported",
+    "localisation_error_rs": "mean error of the heads' positions, share of the sensing range",
+    "sink_error_rs": "mean error of what the sink has, share of the sensing range",
+    "rmse_over_pcrb": "RMSE over the posterior Cramér-Rao bound",
+    "longest_gap_s": "longest time without a position within the sensing range of the target, s",
+    "pcrb_m": "posterior Cramér-Rao bound of the RMSE, m",
+    "clusters": "clusters formed after the first",
+    "clusters_least": "least hand-overs in hindsight",
+    "recoveries": "times that the target was found again after nobody knew of it",
+    "reports_per_sample": "positions sent to the sink, by sampling instant",
+    "reports_least": "least of them in hindsight",
+    "asked_per_sample": "nodes that a head asked to sample, by sampling instant",
+    "answered_per_sample": "of these such that measured the target",
+    "energy_mj_hottest": "energy of the mote that used most, mJ",
+    "energy_mj_per_sample": "energy used by all motes but the one on mains, by sampling instant, mJ",
     "frames_sent": "frames sent by all motes, every hop counted",
     "frames_sent_beacons": "of these beacons, which build the way to the head",
     "frames_sent_reports": "of these reports of readings",
@@ -54,6 +68,7 @@ MEANING = {
     "motes_dead": "motes whose battery is empty at the end",
     "energy_mj": "energy used by all motes but the one on mains, mJ",
     **{f"energy_mj_{cause}": f"of this for {said}, mJ" for cause, (said, _) in figures.CAUSES.items()},
+    **{f"energy_mj_per_sample_{cause}": f"of this for {said}, mJ" for cause, (said, _) in figures.CAUSES.items()},
     **{f"energy_mj_state_{state}": f"of this while {said}, mJ" for state, (said, _) in figures.STATES.items()},
     "events": "that motes handled: readings, frames, alarms",
     "windows": "of simulated time that the motes were run through together",
@@ -64,7 +79,27 @@ HEADLINES = (
     ("position_rmse_m", "RMSE", "m"),
     ("tracked_share", "samples with a position", "%"),
     ("track_lost", "tracks lost", "%"),
+    ("rmse_over_pcrb", "RMSE over its bound", ""),
+    ("sink_error_rs", "mean error at the sink, of the sensing range", "%"),
+    ("reports_per_sample", "reports a sample", ""),
+    ("clusters", "clusters formed", ""),
+    ("energy_mj_per_sample", "energy a sample", "mJ"),
+    ("longest_gap_s", "longest without a position", "s"),
     ("nees_median", "median NEES (exact: 1.39)", ""),
+)
+
+
+FACTS_OF_CONCENTRATIONS = (
+    ("speed", "source", "speed_mps", " m/s"),
+    ("relative noise", "sensor", "relative_noise", ""),
+    ("additive noise", "sensor", "additive_noise", " g/m²"),
+)
+FACTS_OF_RANGES = (
+    ("density", "network", "density", ""),
+    ("noise of a range", "sensor", "range_noise_m", " m"),
+    ("sensing range", "sensor", "range_m", " m"),
+    ("election", "protocol", "election", ""),
+    ("network", "network", "protocol", ""),
 )
 
 
@@ -116,9 +151,7 @@ def facts(results: Output, varied: str) -> list[tuple[str, str]]:
             ("nodes", "network", "nodes", ""),
             ("layout", "network", "layout", ""),
             ("sampling interval", "sensor", "interval_s", " s"),
-            ("speed", "source", "speed_mps", " m/s"),
-            ("relative noise", "sensor", "relative_noise", ""),
-            ("additive noise", "sensor", "additive_noise", " g/m²"),
+            *(FACTS_OF_RANGES if results.is_ranged else FACTS_OF_CONCENTRATIONS),
         ):
             if key in scenario.get(section, {}) and f"{section}.{key}" != varied:
                 value = scenario[section][key]
@@ -129,13 +162,11 @@ def facts(results: Output, varied: str) -> list[tuple[str, str]]:
 def pictures(results: Output) -> list[Picture]:
     if not len(results.track["run"]):
         return []
-    run = figures.typical_run(results)
-    drawn = [
-        figures.field_picture(results),
-        figures.track_picture(results, run),
-        figures.error_picture(results),
-        figures.distribution_picture(results),
-    ]
+    if results.is_ranged:
+        drawn = [ranged_figures.field_picture(results), ranged_figures.excerpt_picture(results)]
+    else:
+        drawn = [figures.field_picture(results), figures.track_picture(results, figures.typical_run(results))]
+    drawn += [figures.error_picture(results), figures.distribution_picture(results), ranged_figures.work_picture(results)]
     return [picture for picture in drawn if picture]
 
 

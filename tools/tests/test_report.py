@@ -98,7 +98,7 @@ def test_page_shows_the_network(folder: Path) -> None:
     assert call("report", folder).returncode == 0
     page = Page((folder / "report.html").read_text(encoding="utf-8"))
     said = {str(image["alt"]).partition(".")[0]: str(image["alt"]) for image in page.images}
-    assert "used 3 J a run" in said["Energy"] and "after 77 s" in said["Energy"]
+    assert "used 3.00 J a run" in said["Energy"] and "after 77 s" in said["Energy"]
     assert "9 frames were sent" in said["Frames lost"]
     found = output.read(folder)
     assert isinstance(found, output.Output)
@@ -110,8 +110,8 @@ def test_page_shows_the_network(folder: Path) -> None:
 def test_metrics_of_the_command_are_known() -> None:
     told = subprocess.run([os.environ["MOTEHOUND"], "list", "--metrics"], capture_output=True, text=True, check=True)
     names = [line.split()[0] for line in told.stdout.splitlines()]
-    causes = [name for name in names if name.startswith("energy_mj_") and not name.startswith("energy_mj_state_")]
-    assert [name.removeprefix("energy_mj_") for name in causes] == list(figures.CAUSES)
+    causes = [name.removeprefix("energy_mj_per_sample_") for name in names if name.startswith("energy_mj_per_sample_")]
+    assert causes == list(figures.CAUSES) and {f"energy_mj_{cause}" for cause in causes} < {*names}
     states = [name.removeprefix("energy_mj_state_") for name in names if name.startswith("energy_mj_state_")]
     assert states == list(figures.STATES)
     lost = [name.removeprefix("frames_lost_") for name in names if name.startswith("frames_lost_")]
@@ -238,6 +238,27 @@ def test_experiments_of_this_repository(file: Path) -> None:
             assert {quantity.metric for quantity in (*drawing.y, *drawing.bounds)} <= metrics_known
 
 
+def test_page_of_clusters(tmp_path: Path) -> None:
+    try:
+        program = command.find(os.environ.get("MOTEHOUND"))
+    except Failure as failure:
+        pytest.skip(str(failure))
+    command.run(program, "zhou_nominal", tmp_path / "out", 2, 0, {"source.duration_s": "600"})
+    assert call("report", tmp_path / "out").returncode == 0
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
+    titles = [str(image["alt"]).partition(".")[0] for image in page.images]
+    assert titles == ["Field", "Track from near", "Error against time", "Distribution", "Beside the bounds", "Energy"]
+    assert "clusters formed" in page.text and "noise of a range" in page.text
+    found = output.read(tmp_path / "out")
+    assert isinstance(found, output.Output)
+    times, quantiles = figures.over_time(found.track, metrics.errors(found.track))
+    assert len(times) == 301 and quantiles.shape == (5, 301)  # every instant for itself
+    later = {name: np.concatenate([column, column]) for name, column in found.track.items()}
+    later["time_s"][len(later["time_s"]) // 2 :] += 1000.0
+    times, quantiles = figures.over_time(later, metrics.errors(later))
+    assert len(times) == len(quantiles[0]) == 101  # six put together
+
+
 def test_page_without_scenario_and_truth(folder: Path) -> None:
     (folder / "scenario.json").unlink()
     lines = (folder / "track.csv").read_text().splitlines()
@@ -307,7 +328,7 @@ def _scenario_without_field(folder: Path) -> Path:
         (_broken_summary, "summary.json: not JSON"),
         (_summary_without_statistics, "`position_rmse_m` needs mean, std"),
         (_missing_column, "track.csv:1: the column `raw_x_m` is missing"),
-        (_short_row, "2 fields, expected 17"),
+        (_short_row, "2 fields, expected 20"),
         (_word_for_number, "track.csv:3: `x_m` is not a number"),
         (_scenario_without_field, "scenario.json: the key `field.width_m` is missing"),
     ],
