@@ -27,14 +27,14 @@ void experiment_scenario(const char *name, const char *settings, struct scenario
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(scenario, name, error, sizeof error), error);
 }
 
-struct figures experiment(const char *name, const char *settings, unsigned runs)
+struct figures experiment_from(uint64_t seed, const char *name, const char *settings, unsigned runs)
 {
     char error[ERROR_SIZE] = "";
     struct scenario scenario;
     struct results results;
     struct figures figures;
     experiment_scenario(name, settings, &scenario);
-    const struct batch batch = {.scenario = &scenario, .runs = runs, .jobs = 2, .version = ""};
+    const struct batch batch = {.scenario = &scenario, .seed = seed, .runs = runs, .jobs = 2, .version = ""};
     TEST_ASSERT_EQUAL_INT_MESSAGE(
         0, results_open(&results, "experiment", name, &scenario, batch.seed, false, error, sizeof error), error);
     const int status = batch_execute(&batch, &results, error, sizeof error);
@@ -43,11 +43,18 @@ struct figures experiment(const char *name, const char *settings, unsigned runs)
         struct metric_statistics statistics;
         (void)results_statistics(&results, (enum metric)i, &statistics);
         figures.mean[i] = statistics.mean;
+        figures.sd[i] = statistics.sd;
     }
     results_discard(&results);
     scenario_free(&scenario);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, status, error);
     figures.lost = (unsigned)lround(figures.mean[METRIC_TRACK_LOST] * runs);
+    return figures;
+}
+
+struct figures experiment(const char *name, const char *settings, unsigned runs)
+{
+    const struct figures figures = experiment_from(0, name, settings, runs);
     const double *pooled = figures.pooled, *mean = figures.mean;
     printf("  %s %s\n", name, settings);
     printf("    m: median %.3f, p95 %.3f, RMSE %.3f, before filtering %.3f, at arrival %.3f\n",
