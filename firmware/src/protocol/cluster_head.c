@@ -168,7 +168,7 @@ static void send_ask(struct mh_cluster_node *c)
                                        .as.ask = {.sender = (int32_t)c->node->id,
                                                   .track = (int32_t)c->of.track,
                                                   .generation = c->of.generation,
-                                                  .time_ms = (int32_t)c->instant,
+                                                  .time_ms = (int32_t)c->of.heard,
                                                   .x_mm = c->of.x_mm,
                                                   .y_mm = c->of.y_mm,
                                                   .vx_mmps = c->of.vx_mmps,
