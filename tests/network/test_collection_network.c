@@ -17,7 +17,9 @@ struct event {
     mh_tick time;
     uint32_t serial; /* order of events of one time; for an alarm also its validity */
     uint16_t mote;
-    uint8_t length; /* of the frame; 0: an alarm */
+    uint8_t length; /* of the frame; 0: an alarm, or if it is told the fate of a frame sent */
+    bool tells;
+    enum mh_sent fate;
     uint8_t frame[MH_FRAME_MAX];
 };
 
@@ -154,11 +156,15 @@ static void transmit(void *context, mh_node_id destination, const uint8_t *frame
             net.longest_detour = detour > net.longest_detour ? detour : net.longest_detour;
         }
     }
+    struct event *told = push(net.now + 5, sender);
+    told->tells = true;
+    told->fate = destination == MH_BROADCAST ? MH_SENT_OK : MH_SENT_NO_ACK;
     for (unsigned i = 0; i < net.count; i++) {
         if (in_range(sender, i) && (destination == MH_BROADCAST || destination == i) && draw(100) >= net.loss_percent) {
             struct event *event = push(net.now + 2 + draw(3), i);
             memcpy(event->frame, frame, length);
             event->length = (uint8_t)length;
+            told->fate = MH_SENT_OK;
         }
     }
 }
@@ -184,6 +190,8 @@ static void run_until(mh_tick end)
         net.now = event->time;
         if (event->length > 0) {
             (void)mh_mote_frame(&net.motes[event->mote], net.now, event->frame, event->length);
+        } else if (event->tells) {
+            mh_mote_sent(&net.motes[event->mote], net.now, event->fate);
         } else if (event->serial == net.alarm_serial[event->mote]) {
             mh_mote_alarm(&net.motes[event->mote], net.now);
         }

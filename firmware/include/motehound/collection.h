@@ -38,9 +38,10 @@ struct mh_collection_config {
 struct mh_collection_kept {
     struct mh_measurement measurement;
     uint8_t hops;
+    uint8_t frame; /* number of the one that it is in the air with */
     bool in_air : 1;
     unsigned attempts : 7; /* made; 0: the place is free */
-    mh_tick due;           /* when it is to be sent again; in the air the number of its frame, below 256 */
+    mh_tick due;           /* when it is to be sent again; in the air, when the radio has forgotten it */
 };
 
 /* State of one mote; read it, but leave writing to the protocol. */
@@ -55,6 +56,7 @@ struct mh_collection {
     bool stale : 1;                           /* ... but two rounds have not come, or the parent is lost */
     bool tracking : 1;                        /* the sink follows a track */
     bool beacon_waits : 1, request_waits : 1; /* to be relayed at ... */
+    unsigned refused : 2;                     /* unicasts to the parent in a row that were not acknowledged */
     mh_tick beacon_time, request_time;
     mh_tick upkeep_time;                   /* the sink's next round; elsewhere when to ask the neighbours for a path */
     uint8_t beacon_copies, request_copies; /* heard meanwhile */
@@ -69,7 +71,6 @@ struct mh_collection {
         mh_tick time;
     } seen[MH_COLLECTION_SEEN_MAX]; /* origin is MH_BROADCAST in a free place */
     uint8_t seen_next;
-    uint8_t refused;    /* unicasts to the parent in a row that were not acknowledged */
     uint8_t sent, told; /* frames handed to the radio, and those of them whose fate is known; wrap */
     struct mh_collection_kept kept[MH_COLLECTION_KEPT_MAX];
     uint16_t retries;

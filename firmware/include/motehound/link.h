@@ -16,8 +16,7 @@
 #define MOTEHOUND_LINK_H
 
 #include "motehound/protocol.h"
-
-#define MH_LINK_PATIENCE 10000 /* ticks: a radio silent so long about a frame has forgotten it, which counts as busy */
+#include "motehound/retry.h"
 
 struct mh_link_config {
     uint8_t attempts; /* of a message, 1 to 100, beside those that the radio makes on its own */

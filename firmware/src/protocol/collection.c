@@ -1,12 +1,11 @@
 #include "motehound/collection.h"
 
-#include "motehound/spread.h"
+#include "motehound/retry.h"
 
 #include <string.h>
 
 #define REFUSALS_MAX 3 /* in a row, of a parent */
-#define DOUBLINGS_MAX 6
-#define NEWS_SHARE 8 /* a path shorter by this part of its hops is worth another relay within a round */
+#define NEWS_SHARE 8   /* a path shorter by this part of its hops is worth another relay within a round */
 
 static mh_tick earlier(mh_tick a, mh_tick b) { return mh_tick_before(a, b) ? a : b; }
 
@@ -27,7 +26,7 @@ static void arm(struct mh_collection *c)
         next = earlier(next, c->request_time);
     }
     for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
-        if (c->kept[i].attempts > 0 && !c->kept[i].in_air) {
+        if (c->kept[i].attempts > 0) {
             next = earlier(next, c->kept[i].due);
         }
     }
@@ -168,51 +167,72 @@ static void send_up(struct mh_collection *c, const struct mh_measurement *measur
     send(c, c->parent, &message);
 }
 
-static void send_kept(struct mh_collection *c, struct mh_collection_kept *kept)
+static void send_kept(struct mh_collection *c, mh_tick now, struct mh_collection_kept *kept)
 {
     kept->in_air = true;
-    kept->due = c->sent;
+    kept->frame = c->sent;
+    kept->due = now + MH_RETRY_PATIENCE;
     kept->attempts++;
     send_up(c, &kept->measurement, kept->hops);
 }
 
 /* A report goes out at once, whether or not there is room to keep it. */
-static void send_report(struct mh_collection *c, const struct mh_measurement *measurement, uint8_t hops)
+static void send_report(struct mh_collection *c, mh_tick now, const struct mh_measurement *measurement, uint8_t hops)
 {
     for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
         if (c->kept[i].attempts == 0) {
             c->kept[i].measurement = *measurement;
             c->kept[i].hops = hops;
-            send_kept(c, &c->kept[i]);
+            send_kept(c, now, &c->kept[i]);
             return;
         }
     }
     send_up(c, measurement, hops);
 }
 
-static void send_again(struct mh_collection *c, mh_tick now)
+/* The radio could not deliver it. */
+static void wait_or_drop(struct mh_collection *c, mh_tick now, struct mh_collection_kept *kept)
 {
-    for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
-        if (c->kept[i].attempts > 0 && !c->kept[i].in_air && has_come(c->kept[i].due, now)) {
-            send_kept(c, &c->kept[i]);
-            return; /* others that are due set off the alarm at once */
-        }
+    kept->in_air = false;
+    if (kept->attempts >= c->config->attempts) {
+        kept->attempts = 0;
+        drop(c, MH_LOSS_NOT_ACKNOWLEDGED);
+    } else {
+        count(&c->retries);
+        kept->due = now + mh_retry_wait(c->config->backoff, kept->attempts, c->node->id, c->retries);
     }
 }
 
-/* The wait doubles from attempt to attempt. Of each, half is the same for all, half depends on who waits and how often it has. */
-static mh_tick backoff(const struct mh_collection *c, uint8_t attempts)
+/* A radio that has forgotten a frame has forgotten those before it too. */
+static void forget(struct mh_collection *c, mh_tick now, struct mh_collection_kept *kept)
 {
-    const uint8_t doublings = attempts - 1 < DOUBLINGS_MAX ? (uint8_t)(attempts - 1) : DOUBLINGS_MAX;
-    const mh_tick longest = c->config->backoff << doublings;
-    return longest - mh_spread(c->node->id, c->retries, longest / 2 + 1);
+    const uint8_t after_it = (uint8_t)(c->sent - kept->frame - 1);
+    if (after_it < (uint8_t)(c->sent - c->told)) {
+        c->told = (uint8_t)(c->sent - after_it);
+    }
+    wait_or_drop(c, now, kept);
+}
+
+static void send_again(struct mh_collection *c, mh_tick now)
+{
+    for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
+        struct mh_collection_kept *kept = &c->kept[i];
+        if (kept->attempts == 0 || !has_come(kept->due, now)) {
+            continue;
+        }
+        if (!kept->in_air) {
+            send_kept(c, now, kept);
+            return; /* others that are due set off the alarm at once */
+        }
+        forget(c, now, kept);
+    }
 }
 
 /* The report in the frame whose fate is told, or NULL. */
 static struct mh_collection_kept *find_sent(struct mh_collection *c)
 {
     for (uint8_t i = 0; i < MH_COLLECTION_KEPT_MAX; i++) {
-        if (c->kept[i].attempts > 0 && c->kept[i].in_air && c->kept[i].due == c->told) {
+        if (c->kept[i].attempts > 0 && c->kept[i].in_air && c->kept[i].frame == c->told) {
             return &c->kept[i];
         }
     }
@@ -241,7 +261,7 @@ static void hear_report(struct mh_collection *c, mh_tick now, const mh_report_t 
     }
     struct mh_measurement measurement;
     mh_report_to_measurement(report, &measurement);
-    send_report(c, &measurement, (uint8_t)(report->hops + 1));
+    send_report(c, now, &measurement, (uint8_t)(report->hops + 1));
 }
 
 /* Broadcasts are not acknowledged: only the parent can refuse, and that they are out does not speak for it. */
@@ -249,16 +269,12 @@ static void sent(void *state, mh_tick now, enum mh_sent outcome)
 {
     struct mh_collection *c = state;
     struct mh_collection_kept *kept = find_sent(c);
-    c->told++;
-    if (kept && (outcome == MH_SENT_OK || kept->attempts >= c->config->attempts)) {
+    c->told = (uint8_t)(c->told + (c->told != c->sent));
+    if (kept && outcome == MH_SENT_OK) {
         kept->attempts = 0;
     } else if (kept) {
-        count(&c->retries);
-        kept->in_air = false;
-        kept->due = now + backoff(c, kept->attempts);
-    }
-    const bool given_up = outcome == MH_SENT_NO_ACK && !(kept && kept->attempts > 0);
-    if (given_up || (kept && kept->attempts == 0 && outcome != MH_SENT_OK)) {
+        wait_or_drop(c, now, kept);
+    } else if (outcome == MH_SENT_NO_ACK) {
         drop(c, MH_LOSS_NOT_ACKNOWLEDGED);
     }
     if (outcome == MH_SENT_OK) {
@@ -440,11 +456,10 @@ static void timer(void *state, mh_tick now)
 static enum mh_status publish(void *state, mh_tick now, const struct mh_measurement *measurement)
 {
     struct mh_collection *c = state;
-    (void)now;
     if (!c->joined || c->node->is_head) {
         return MH_ERR_NO_ROUTE;
     }
-    send_report(c, measurement, 0);
+    send_report(c, now, measurement, 0);
     return MH_OK;
 }
 

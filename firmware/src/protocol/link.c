@@ -1,10 +1,6 @@
 #include "motehound/link.h"
 
-#include "motehound/spread.h"
-
 #include <string.h>
-
-#define DOUBLINGS_MAX 6
 
 static void count(uint16_t *counter)
 {
@@ -119,7 +115,7 @@ enum mh_status mh_link_take(struct mh_link *link, const struct mh_message *messa
 
 const struct mh_message *mh_link_due(struct mh_link *link, mh_tick now)
 {
-    if (link->in_air && mh_ticks_between(link->due_time, now) > MH_LINK_PATIENCE) {
+    if (link->in_air && mh_ticks_between(link->due_time, now) > MH_RETRY_PATIENCE) {
         link->ahead = link->behind = 0;
         (void)mh_link_sent(link, now, MH_SENT_BUSY);
     }
@@ -150,14 +146,6 @@ void mh_link_drop(struct mh_link *link, enum mh_loss reason)
     mh_link_finish(link);
 }
 
-/* The wait doubles from attempt to attempt. Of each, half is the same for all, half depends on who waits for whom and how often. */
-static mh_tick backoff(const struct mh_link *link, uint8_t attempts)
-{
-    const uint8_t doublings = attempts - 1 < DOUBLINGS_MAX ? (uint8_t)(attempts - 1) : DOUBLINGS_MAX;
-    const mh_tick longest = link->config->backoff << doublings;
-    return longest - mh_spread(link->node->id, link->retries, longest / 2 + 1);
-}
-
 enum mh_link_outcome mh_link_sent(struct mh_link *link, mh_tick now, enum mh_sent outcome)
 {
     if (link->ahead > 0 || !link->in_air) {
@@ -178,7 +166,7 @@ enum mh_link_outcome mh_link_sent(struct mh_link *link, mh_tick now, enum mh_sen
     } else {
         count(&link->retries);
         link->waits = true;
-        link->retry_time = now + backoff(link, first->attempts);
+        link->retry_time = now + mh_retry_wait(link->config->backoff, first->attempts, link->node->id, link->retries);
     }
     return outcome == MH_SENT_NO_ACK ? MH_LINK_LOST : MH_LINK_BUSY;
 }

@@ -1,5 +1,6 @@
 /* One mote's side of `collection`, message by message. Whole networks: tests/network. */
 #include "motehound/collection.h"
+#include "motehound/retry.h"
 #include "port.h"
 #include "unity.h"
 
@@ -315,6 +316,34 @@ static void a_report_that_the_radio_gives_up_is_sent_again(void)
     TEST_ASSERT_EQUAL(before + 3, saw.sent);
 }
 
+/* A radio that was reset tells nothing any more of what it had; of what it is given later it does. */
+static void a_fate_that_is_never_told_does_not_block(void)
+{
+    hear_beacon(5, 1, 7, 3);
+    collection->timer(&state, saw.timer); /* relays the beacon, whose fate is not told either */
+    publish(1000);
+    hear_beacon(6, 1, 7, 9);
+    const unsigned before = saw.sent;
+    TEST_ASSERT_EQUAL_UINT32(1000 + MH_RETRY_PATIENCE, saw.timer);
+    collection->timer(&state, saw.timer - 1);
+    TEST_ASSERT_EQUAL(before, saw.sent);
+    collection->timer(&state, 1000 + MH_RETRY_PATIENCE);
+    TEST_ASSERT_EQUAL(1, state.retries);
+    const mh_tick again = saw.timer;
+    TEST_ASSERT_TRUE(again > 1000 + MH_RETRY_PATIENCE && again <= 1000 + MH_RETRY_PATIENCE + config.backoff);
+    collection->timer(&state, again);
+    TEST_ASSERT_EQUAL(before + 1, saw.sent);
+    TEST_ASSERT_EQUAL_INT32(1000, saw.message.as.report.time_ms);
+    collection->sent(&state, again + 5, MH_SENT_OK);
+    collection->sent(&state, again + 6, MH_SENT_NO_ACK); /* too late */
+    collection->timer(&state, again + 2 * MH_RETRY_PATIENCE);
+    publish(40000);
+    collection->sent(&state, 40001, MH_SENT_OK);
+    collection->timer(&state, 40000 + 2 * MH_RETRY_PATIENCE);
+    TEST_ASSERT_EQUAL(before + 2, saw.sent);
+    TEST_ASSERT_EQUAL(1, state.retries);
+}
+
 static void what_cannot_be_kept_is_sent_once(void)
 {
     hear_beacon(5, 1, 7, 3);
@@ -486,6 +515,7 @@ int main(void)
     RUN_TEST(a_parent_that_is_gone_is_replaced);
     RUN_TEST(broadcasts_do_not_excuse_a_parent);
     RUN_TEST(a_report_that_the_radio_gives_up_is_sent_again);
+    RUN_TEST(a_fate_that_is_never_told_does_not_block);
     RUN_TEST(what_cannot_be_kept_is_sent_once);
     RUN_TEST(two_nodes_that_take_each_other_for_parents_notice);
     RUN_TEST(a_request_is_relayed_once_and_only_where_it_helps);

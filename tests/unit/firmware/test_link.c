@@ -97,8 +97,8 @@ static void a_fate_that_is_never_told_does_not_block(void)
     broadcast();
     take(1);
     pump(100);
-    TEST_ASSERT_NULL(mh_link_due(&link, 100 + MH_LINK_PATIENCE));
-    TEST_ASSERT_NULL(mh_link_due(&link, 101 + MH_LINK_PATIENCE)); /* after a wait */
+    TEST_ASSERT_NULL(mh_link_due(&link, 100 + MH_RETRY_PATIENCE));
+    TEST_ASSERT_NULL(mh_link_due(&link, 101 + MH_RETRY_PATIENCE)); /* after a wait */
     mh_tick again;
     TEST_ASSERT_TRUE(mh_link_alarm(&link, &again));
     pump(again);
