@@ -18,7 +18,7 @@ void bench_setup(void)
 void bench_prepare(unsigned step)
 {
     now = step;
-    ranging_measurements(step, measurements);
+    ranging_measurements(step, RANGING_MEASUREMENTS, measurements);
 }
 
 void bench_step(void)

@@ -5,12 +5,12 @@
 /* nodes within 50 m of a place: eight */
 static const int32_t pitch_mm = 31000;
 
-void ranging_measurements(unsigned step, struct mh_measurement measurements[RANGING_MEASUREMENTS])
+void ranging_measurements(unsigned step, uint8_t wanted, struct mh_measurement *measurements)
 {
     const int32_t x_mm = 8000 * (int32_t)step, y_mm = 4000 * (int32_t)step;
     struct mh_random noise;
     mh_random_init(&noise, step);
-    mh_q20 kept[RANGING_MEASUREMENTS]; /* distances, ascending */
+    mh_q20 kept[RANGING_MEASUREMENTS_MAX]; /* distances, ascending */
     uint8_t count = 0;
     for (int8_t i = -2; i <= 3; i++) {
         for (int8_t j = -2; j <= 3; j++) {
@@ -19,12 +19,12 @@ void ranging_measurements(unsigned step, struct mh_measurement measurements[RANG
             const mh_q20 distance = mh_q20_from_real(mh_sqrt(dx * dx + dy * dy));
             uint8_t at = count;
             for (; at > 0 && kept[at - 1] > distance; at--) {
-                if (at < RANGING_MEASUREMENTS) {
+                if (at < wanted) {
                     kept[at] = kept[at - 1];
                     measurements[at] = measurements[at - 1];
                 }
             }
-            if (at < RANGING_MEASUREMENTS) {
+            if (at < wanted) {
                 const mh_real error = 17.3f * (mh_random_unit(&noise) - 0.5f); /* uniform, standard deviation 5 m */
                 const struct mh_measurement taken = {.node = (mh_node_id)(10 * (i + 2) + j + 2),
                                                      .place = node,
@@ -32,7 +32,7 @@ void ranging_measurements(unsigned step, struct mh_measurement measurements[RANG
                                                      .value = distance + mh_q20_from_real(error)};
                 measurements[at] = taken;
                 kept[at] = distance;
-                count = (uint8_t)(count + (count < RANGING_MEASUREMENTS));
+                count = (uint8_t)(count + (count < wanted));
             }
         }
     }

@@ -1,12 +1,12 @@
-/* A target walks over a grid of nodes at 4.5 m/s; its eight nearest nodes measure their ranges to 5 m. */
+/* A target walks over a grid of nodes at 4.5 m/s; the nodes nearest to it measure their ranges to 5 m. */
 #ifndef RANGING_H
 #define RANGING_H
 
 #include "motehound/measurement.h"
 
-enum { RANGING_INTERVAL = 2000, RANGING_MEASUREMENTS = 8 };
+enum { RANGING_INTERVAL = 2000, RANGING_MEASUREMENTS = 8, RANGING_MEASUREMENTS_MAX = 12 };
 
-/* What is measured at instant number `step`. */
-void ranging_measurements(unsigned step, struct mh_measurement measurements[RANGING_MEASUREMENTS]);
+/* What the `count` nearest nodes measure at instant number `step`; count 1 to RANGING_MEASUREMENTS_MAX. */
+void ranging_measurements(unsigned step, uint8_t count, struct mh_measurement *measurements);
 
 #endif

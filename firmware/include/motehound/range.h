@@ -68,7 +68,7 @@ struct mh_range_config {
 struct mh_range {
     struct mh_range_config config;
     struct mh_kalman filter;
-    mh_node_id anchors[MH_KALMAN_STATES_MAX]; /* whose bias is state i */
+    mh_node_id anchors[MH_RANGE_BIASES_MAX + 1]; /* whose bias is state 4 + i */
     struct mh_measurement
         heard[MH_RANGE_HEARD_MAX]; /* while there is no track: the last range of each anchor, in the order of time */
     struct mh_gate gate;

@@ -1,7 +1,7 @@
 /* One position in the plane from the ranges of one instant, near a place where it is known to be: maximum likelihood by Gauss-Newton.
  *
  * The ranges' errors are normal and independent with one standard deviation. About two passes over the ranges are enough from a filter's
- * prediction: each ends the search as soon as the circles that the ranges draw are straight over its step, by a twentieth of that deviation.
+ * prediction: each ends the search as soon as the circles that the ranges draw are straight over its step, to a tenth of that deviation.
  * Where nothing is known multilateration.h searches everywhere and suffers outliers. */
 #ifndef MOTEHOUND_RANGE_FIX_H
 #define MOTEHOUND_RANGE_FIX_H

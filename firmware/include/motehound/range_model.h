@@ -5,11 +5,11 @@
 #include "motehound/geometry.h"
 #include "motehound/status.h"
 
-/* Distance in metres from `anchor` to a target `rise_m` above it (or below, if negative), and its gradient with respect to the
- * target's place in the plane: the horizontal part of the unit vector from the anchor to the target. All finite, the
- * coordinates within +- 1e6 m. Cost: one square root, one division.
+/* Distance from `anchor` to a target `rise` above it (or below, if negative), and its gradient with respect to the target's place in
+ * the plane: the horizontal part of the unit vector from the anchor to the target. All lengths in one unit, finite, within +- 1e9.
+ * Cost: one square root, one division.
  * Errors: MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (the two places coincide: no gradient). */
-enum mh_status mh_range_model(struct mh_vec2 target, struct mh_vec2 anchor, mh_real rise_m, mh_real *range_m,
+enum mh_status mh_range_model(struct mh_vec2 target, struct mh_vec2 anchor, mh_real rise, mh_real *distance,
                               struct mh_vec2 *gradient);
 
 #endif

@@ -93,7 +93,7 @@ static struct errors errors_of(const struct mh_range *range, uint8_t states, mh_
         errors.scale = i++;
     }
     for (; i < states; i++) {
-        if (range->anchors[i] == node) {
+        if (range->anchors[i - MOTION] == node) {
             errors.bias = i;
         }
     }
@@ -223,7 +223,7 @@ static mh_real with_errors(struct mh_range *range, struct mh_kalman *filter, mh_
     if (errors.bias == 0 && bias > 0) {
         if (mh_kalman_append(filter, 0, bias) == MH_OK) {
             errors.bias = (uint8_t)(filter->n - 1);
-            range->anchors[errors.bias] = node;
+            range->anchors[errors.bias - MOTION] = node;
         } else {
             *variance += bias;
         }
