@@ -4,7 +4,7 @@
  * rules look ahead along a straight line: the target is expected at P_q = stored + q T stored_velocity in q instants, from what is stored of
  * the track (estimate.h) but for sacx. A node covers a place within the sensing range of it. Candidates are the head and its neighbours.
  *
- * Zhou et al., "Energy-efficient target tracking in wireless sensor networks", Journal of Software, 2013:
+ * Zhou et al., "Moving target localization and tracking algorithms: a particle filter based method", Journal of Software 24(9), 2013:
  *   sac       Few, and those that will serve longest. The head and `members` others are asked. A new cluster is due when the head does not
  *             cover P_1, or when the nodes of the cluster that detected now, or those that cover P_1, are fewer than `least_answers` and
  *             there are more candidates that cover P_1 than that. Of these, ordered by how many of P_1 ... P_horizon they cover (most first),

@@ -62,7 +62,7 @@ enum mh_status mh_particles_mean(const struct mh_particles *particles, mh_real r
  * MH_ERR_NOT_FINITE. */
 enum mh_status mh_particles_resample(struct mh_particles *particles, struct mh_random *random);
 
-/* Partial rejection control (Liu, Chen and Logvinenko 2001, in "Sequential Monte Carlo Methods in Practice", p. 236): with c the mean weight, a
+/* Partial rejection control (Liu, Chen and Logvinenko 2001, in "Sequential Monte Carlo Methods in Practice"): with c the mean weight, a
  * particle stays with probability min(1, w / c) and then weighs max(w, c); otherwise it is drawn anew. After MH_PARTICLES_REDRAWS redraws it
  * stays as it is, with its own weight.
  *

@@ -1,4 +1,5 @@
-/* The tracker `pftl`: the particle filter of Zhou, Wang, Wang and Zhou, "Energy-efficient cluster-based target tracking", Journal of Software 24(9), 2013.
+/* The tracker `pftl`: the particle filter of Zhou et al., "Moving target localization and tracking algorithms: a particle filter based method",
+ * Journal of Software 24(9), 2013.
  *
  * Measurements are ranges in m, horizontal distances with Gaussian noise; they may be negative near a node. Nothing of an instant's particles is
  * kept: what is stored of the track is the last reported position and the velocity from the report before (the paper's buffer of two fixes),
@@ -23,6 +24,9 @@
  * `time`; `covariance` that of the particles, of the first position that of a centroid, all zero when coasting; `raw` equals
  * position; `age` 0; `measurements` the ranges used; `flags` STARTED, COASTED, REFRESHED. `origin` is the first node's place, its z 0; mh_real
  * resolves 1 mm 10 km from it. step() gives MH_NONE until the first measurement. interest() does not exist. save() writes 20 bytes, 12 after a first report.
+ *
+ * The covariance knows nothing of how wrong the region may be: the squared error over it averages 0.2 (sharp ranges) to 4.5 (slow targets) where 2 is
+ * right.
  *
  * Cost: on average some four draws a particle, each of n roots and 7 n operations; 12 bytes a particle. See docs/costs.md. */
 #ifndef MOTEHOUND_PFTL_H
