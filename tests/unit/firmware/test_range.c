@@ -82,8 +82,7 @@ static void follows_a_straight_line(void)
     TEST_ASSERT_FLOAT_WITHIN(0.05f, 1.5f, estimate.velocity.x);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -0.5f, estimate.velocity.y);
     TEST_ASSERT_TRUE(estimate.covariance.xx > 0 && estimate.covariance.xx < 0.01f);
-    TEST_ASSERT_EQUAL_INT32(anchors[0].x_mm, estimate.origin.x_mm);
-    TEST_ASSERT_EQUAL_INT32(anchors[0].y_mm, estimate.origin.y_mm);
+    TEST_ASSERT_TRUE(mh_place_within(&estimate.origin, &anchors[0], 30000)); /* an anchor */
     TEST_ASSERT_EQUAL_INT32(1000, estimate.origin.z_mm);
     const mh_tick now = t0 + 4000;
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.predict(&state, now + 2000, &estimate));
@@ -205,11 +204,334 @@ static void bad_arguments(void)
     mh_range_config_default(&config);
     config.height_m = INFINITY;
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_range.init(&state, &config, 100));
+    mh_range_config_default(&config);
+    mh_real *const others[] = {&config.bias_sd_m, &config.scale_sd, &config.sensing_range_m, &config.speed_mps,
+                               &config.tolerance_m};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        static const mh_real wrong[] = {-1, NAN, INFINITY};
+        for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+            mh_range_config_default(&config);
+            *others[i] = wrong[k];
+            TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_range.init(&state, &config, 100));
+        }
+    }
     begin(0.1f);
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_range.step(&state, 100, NULL, 1, &estimate));
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_range.step(&state, 100, NULL, 0, NULL));
     TEST_ASSERT_EQUAL_INT(MH_NONE, mh_tracker_range.step(&state, 100, NULL, 0, &estimate));
 }
+
+/* A field of sensors that hear a target within 50 m and answer at once, every 2 s, with ranges of 5 m. */
+enum { NODES = 6, SAMPLE = 2000 };
+
+static const mh_real nodes[NODES][2] = {{-30, 10}, {-5, 35}, {20, 25}, {35, -10}, {5, -30}, {-25, -25}};
+static struct mh_measurement answers[NODES];
+
+static void begin_in_field(mh_real tolerance_m)
+{
+    struct mh_range_config config;
+    mh_range_config_default(&config);
+    config.range_sd_m = 5;
+    config.sensing_range_m = 50;
+    config.acceleration_sd_mps2 = 0.5f;
+    config.speed_mps = 4.5f;
+    config.height_m = 0;
+    config.tolerance_m = tolerance_m;
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.init(&state, &config, SAMPLE));
+}
+
+/* what the first `count` nodes measure of a target at (x, y) m, a node's error each time the same */
+static enum mh_status sample(mh_tick number, mh_real x, mh_real y, size_t count)
+{
+    static const mh_real errors[NODES] = {2, -3, 4, -2, 1, -2};
+    for (size_t i = 0; i < count; i++) {
+        const struct mh_measurement taken = {
+            .node = (mh_node_id)i,
+            .place = {(int32_t)(1000 * nodes[i][0]), (int32_t)(1000 * nodes[i][1]), 0},
+            .time = number * SAMPLE,
+            .value = mh_q20_from_real(mh_sqrt(mh_squared(nodes[i][0] - x) + mh_squared(nodes[i][1] - y)) + errors[i])};
+        answers[i] = taken;
+    }
+    return mh_tracker_range.step(&state, number * SAMPLE, answers, count, &estimate);
+}
+
+static mh_real estimated_x(void) { return (mh_real)estimate.origin.x_mm * 0.001f + estimate.position.x; }
+static mh_real estimated_y(void) { return (mh_real)estimate.origin.y_mm * 0.001f + estimate.position.y; }
+
+static void assert_near(mh_real tolerance, mh_real x, mh_real y)
+{
+    const struct mh_sym2 *P = &estimate.covariance;
+    TEST_ASSERT_FLOAT_WITHIN(tolerance, x, estimated_x());
+    TEST_ASSERT_FLOAT_WITHIN(tolerance, y, estimated_y());
+    TEST_ASSERT_TRUE(mh_finite(P->xx) && P->xx > 0 && P->xx * P->yy > P->xy * P->xy);
+}
+
+/* one, then two that hear it: it is near them, and the covariance knows no better than the sensors' range; then none, then all */
+static void starts_with_one_range(void)
+{
+    begin_in_field(0);
+    TEST_ASSERT_EQUAL_INT(MH_NONE, sample(1, 0, 0, 0));
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(2, 0, 0, 1));
+    TEST_ASSERT_EQUAL_UINT8(MH_ESTIMATE_STARTED | MH_ESTIMATE_REFRESHED, estimate.flags);
+    assert_near(50, 0, 0);
+    TEST_ASSERT_FLOAT_WITHIN(1, 625, estimate.covariance.xx);
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(3, 0, 0, 2));
+    assert_near(50, 0, 0);
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(4, 0, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(MH_ESTIMATE_COASTED, estimate.flags);
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(5, 0, 0, NODES));
+    assert_near(8, 0, 0);
+    TEST_ASSERT_TRUE(estimate.covariance.xx < 12 && estimate.covariance.yy < 12);
+}
+
+/* 4.5 m/s, then a turn of 90 degrees; the bound of a step is that of six ranges of 5 m without any past, 2.9 m in each coordinate */
+static void follows_a_manoeuvre(void)
+{
+    begin_in_field(0);
+    for (mh_tick i = 0; i < 8; i++) {
+        TEST_ASSERT_EQUAL_INT(MH_OK, sample(i, -27 + 9 * (mh_real)i, 0, NODES));
+    }
+    assert_near(5, 36, 0);
+    for (mh_tick i = 8; i < 12; i++) {
+        TEST_ASSERT_EQUAL_INT(MH_OK, sample(i, 36, 9 * (mh_real)(i - 7), NODES));
+        TEST_ASSERT_EQUAL_UINT16(NODES, estimate.measurements);
+        assert_near(9, 36, 9 * (mh_real)(i - 7));
+    }
+}
+
+/* two ranges at a time keep a track that six have started */
+static void two_ranges_keep_the_track(void)
+{
+    begin_in_field(0);
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(1, 0, 0, NODES));
+    for (mh_tick i = 2; i < 30; i++) {
+        TEST_ASSERT_EQUAL_INT(MH_OK, sample(i, 0.5f * (mh_real)(i - 1), 0, 2));
+        assert_near(12, 0.5f * (mh_real)(i - 1), 0);
+    }
+}
+
+/* a target on top of a node, measured below zero: among others, and alone */
+static void negative_ranges_are_measurements(void)
+{
+    begin_in_field(0);
+    sample(1, 20, 25, NODES);
+    sample(2, 20, 25, NODES);
+    for (size_t i = 0; i < NODES; i++) {
+        answers[i].time = 3 * SAMPLE;
+    }
+    answers[2].value = MH_Q20(-6.0f);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.step(&state, 3 * SAMPLE, answers, NODES, &estimate));
+    TEST_ASSERT_EQUAL_UINT16(NODES, estimate.measurements);
+    assert_near(8, 20, 25);
+    answers[2].time = 4 * SAMPLE;
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.step(&state, 4 * SAMPLE, &answers[2], 1, &estimate));
+    TEST_ASSERT_EQUAL_UINT16(1, estimate.measurements);
+    assert_near(8, 20, 25);
+}
+
+/* 1e9 m is 2,048 m in Q11.20: one false range among six spoils nothing, six of them leave the track where it was */
+static void a_range_of_1e9(void)
+{
+    begin_in_field(0);
+    sample(1, 0, 0, NODES);
+    sample(2, 0, 0, NODES);
+    const mh_real x = estimated_x(), y = estimated_y();
+    for (size_t i = 0; i < NODES; i++) {
+        answers[i].time = 3 * SAMPLE;
+    }
+    answers[1].value = mh_q20_from_real(1e9f);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.step(&state, 3 * SAMPLE, answers, NODES, &estimate));
+    TEST_ASSERT_EQUAL_UINT16(NODES - 1, estimate.measurements);
+    assert_near(5, x, y);
+    for (size_t i = 0; i < NODES; i++) {
+        answers[i].time = 4 * SAMPLE;
+        answers[i].value = mh_q20_from_real(1e9f);
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.step(&state, 4 * SAMPLE, answers, NODES, &estimate));
+    TEST_ASSERT_EQUAL_UINT8(MH_ESTIMATE_COASTED, estimate.flags);
+    assert_near(8, x, y);
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(5, 0, 0, NODES));
+    assert_near(8, 0, 0);
+}
+
+/* they cannot tell which side of the line it is on, 15 m off it, and the covariance says so; a node off the line tells */
+static void nodes_on_a_line(void)
+{
+    begin_in_field(0);
+    for (mh_tick number = 1; number < 6; number++) {
+        for (size_t i = 0; i < NODES; i++) {
+            const mh_real x = 15 * (mh_real)i - 40;
+            const struct mh_measurement taken = {.node = (mh_node_id)i,
+                                                 .place = {(int32_t)(1000 * x), 0, 0},
+                                                 .time = number * SAMPLE,
+                                                 .value = mh_q20_from_real(mh_sqrt((x - 2) * (x - 2) + 225))};
+            answers[i] = taken;
+        }
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.step(&state, number * SAMPLE, answers, NODES, &estimate));
+        assert_near(30, 2, 15);
+        TEST_ASSERT_TRUE(mh_squared(estimated_x() - 2) < 9 * estimate.covariance.xx);
+        TEST_ASSERT_TRUE(mh_squared(estimated_y() - 15) < 9 * estimate.covariance.yy);
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(6, 2, 15, NODES));
+    assert_near(8, 2, 15);
+}
+
+/* the stored position leaves the estimate by no more than the tolerance, and moves on by itself in between */
+static void stores_what_the_tolerance_demands(void)
+{
+    static const mh_real tolerances[] = {0, 5, 20};
+    int reports[3] = {0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        struct mh_estimate last = {.flags = 0};
+        begin_in_field(tolerances[k]);
+        for (mh_tick i = 0; i < 12; i++) {
+            TEST_ASSERT_EQUAL_INT(MH_OK, sample(i, -27 + 4.5f * (mh_real)i, i % 3 == 0 ? 3 : -3, NODES));
+            const mh_real x = estimate.stored.x - estimate.position.x, y = estimate.stored.y - estimate.position.y;
+            TEST_ASSERT_TRUE(mh_sqrt(x * x + y * y) <= tolerances[k] * 1.00001f);
+            if (estimate.flags & MH_ESTIMATE_REFRESHED) {
+                reports[k]++;
+                TEST_ASSERT_EQUAL_FLOAT(estimate.position.x, estimate.stored.x);
+                TEST_ASSERT_EQUAL_FLOAT(estimate.velocity.y, estimate.stored_velocity.y);
+            } else {
+                TEST_ASSERT_FLOAT_WITHIN(1e-4f, last.stored.x + 2 * last.stored_velocity.x, estimate.stored.x);
+                TEST_ASSERT_FLOAT_WITHIN(1e-4f, last.stored.y + 2 * last.stored_velocity.y, estimate.stored.y);
+            }
+            last = estimate;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(12, reports[0]);
+    TEST_ASSERT_TRUE(reports[1] < 12 && reports[2] < reports[1] && reports[2] > 0);
+}
+
+/* a second tracker goes on where the first one was, to what 8 bits of the covariance's factors and a millimetre leave */
+static void is_handed_over(void)
+{
+    uint8_t bytes[MH_TRACK_BYTES_MAX];
+    size_t length = 0;
+    begin_in_field(5);
+    TEST_ASSERT_EQUAL_INT(MH_NONE, mh_tracker_range.save(&state, bytes, &length));
+    for (mh_tick i = 0; i < 5; i++) {
+        sample(i, -27 + 9 * (mh_real)i, 2, NODES);
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.save(&state, bytes, &length));
+    TEST_ASSERT_EQUAL_UINT(MH_RANGE_SAVED, length);
+    sample(5, 18, 2, NODES);
+    const struct mh_estimate first = estimate;
+    const mh_real x = estimated_x(), y = estimated_y();
+    begin_in_field(5);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.load(&state, bytes, length));
+    sample(5, 18, 2, NODES);
+    TEST_ASSERT_EQUAL_UINT8(first.flags, estimate.flags);
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, x, estimated_x());
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, y, estimated_y());
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, first.velocity.x, estimate.velocity.x);
+    TEST_ASSERT_FLOAT_WITHIN(0.01f * first.covariance.xx, first.covariance.xx, estimate.covariance.xx);
+    TEST_ASSERT_FLOAT_WITHIN(0.002f, first.stored.x - first.position.x,
+                             estimate.stored.x - estimate.position.x + 0.001f);
+    TEST_ASSERT_EQUAL_FLOAT(first.stored_velocity.x, estimate.stored_velocity.x);
+}
+
+/* (1, -2) m at (3, -4) m/s, as a big-endian machine and a small-endian one write it */
+static void saved_bytes_are_the_same_everywhere(void)
+{
+    static const uint8_t expected[MH_RANGE_SAVED] = {
+        0,    0,    0x07, 0xD0, 0x00, 0x00, 0x03, 0xE8, 0xFF, 0xFF, 0xF8, 0x30, 0x40, 0x40, 0,
+        0,    0xC0, 0x80, 0,    0,    0x40, 0x80, 0x3F, 0x00, 0x40, 0x80, 0,    0,    0,    0,
+        0x3F, 0x80, 0,    0,    0,    0,    0,    0,    0x3F, 0x80, 0,    0,    0x07, 0xD0, 0x00,
+        0x00, 0x03, 0xE8, 0xFF, 0xFF, 0xF8, 0x30, 0x40, 0x40, 0,    0,    0xC0, 0x80, 0,    0};
+    uint8_t bytes[MH_TRACK_BYTES_MAX];
+    size_t length;
+    begin_in_field(5);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.load(&state, expected, MH_RANGE_SAVED));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.predict(&state, 3000, &estimate));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, 4, estimated_x());
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, -6, estimated_y());
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.save(&state, bytes, &length));
+    TEST_ASSERT_EQUAL_UINT(MH_RANGE_SAVED, length);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, bytes, MH_RANGE_SAVED);
+}
+
+static void corrupt_bytes_are_refused(void)
+{
+    uint8_t good[MH_TRACK_BYTES_MAX], bad[MH_TRACK_BYTES_MAX];
+    size_t length;
+    begin_in_field(5);
+    sample(1, 0, 0, NODES);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.save(&state, good, &length));
+    begin_in_field(5);
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_tracker_range.load(&state, good, length - 1));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_tracker_range.load(&state, good, length + 1));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_tracker_range.load(&state, good, 0));
+    /* places beyond a coordinate's range, velocities and factors that are no numbers, a variance below 0 */
+    static const uint8_t at[] = {4, 8, 12, 16, 20, 22, 28, 38, 44, 48, 52, 56};
+    for (size_t i = 0; i < sizeof at; i++) {
+        memcpy(bad, good, sizeof bad);
+        bad[at[i]] = 0x7F;
+        bad[at[i] + 1] = 0xC0;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MH_ERR_CORRUPT, mh_tracker_range.load(&state, bad, length), "not a number");
+    }
+    memcpy(bad, good, sizeof bad);
+    bad[20] |= 0x80;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_tracker_range.load(&state, bad, length));
+    TEST_ASSERT_EQUAL_INT(MH_NONE, mh_tracker_range.predict(&state, 5000, &estimate));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.load(&state, good, length));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.predict(&state, 5000, &estimate));
+}
+
+/* told that it is elsewhere, it starts anew among those who hear it, at once */
+static void restarts_elsewhere(void)
+{
+    begin_in_field(5);
+    for (mh_tick i = 0; i < 5; i++) {
+        sample(i, 0, 0, NODES);
+    }
+    mh_tracker_range.restart(&state);
+    TEST_ASSERT_EQUAL_INT(MH_NONE, mh_tracker_range.predict(&state, 5 * SAMPLE, &estimate));
+    TEST_ASSERT_EQUAL_INT(MH_NONE, sample(5, 0, 0, 0));
+    TEST_ASSERT_EQUAL_INT(MH_OK, sample(6, 25, -20, NODES));
+    TEST_ASSERT_EQUAL_UINT8(MH_ESTIMATE_STARTED | MH_ESTIMATE_REFRESHED, estimate.flags);
+    assert_near(8, 25, -20);
+    TEST_ASSERT_EQUAL_FLOAT(0, estimate.velocity.x);
+}
+
+#if MH_RANGE_BIASES_MAX >= 5
+/* anchors read one after the other whose ranges are 5 % long, and each off by up to 2 m: (true distance) x 1.05 + bias */
+static void learns_scale_and_biases(void)
+{
+    static const struct mh_place far[ANCHORS] = {{0, 0, 0}, {60000, 5000, 0}, {50000, 55000, 0}, {-5000, 50000, 0}};
+    static const mh_real bias[ANCHORS] = {2, -1, 1, -2};
+    struct mh_range_config config;
+    mh_range_config_default(&config);
+    config.range_sd_m = 0.3f;
+    config.bias_sd_m = 2;
+    config.scale_sd = 0.1f;
+    config.acceleration_sd_mps2 = 0.3f;
+    config.height_m = 0;
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.init(&state, &config, 250));
+    mh_real early = 0, late = 0, sd = 0;
+    for (int i = 1; i <= 2000; i++) { /* along a circle at 1 m/s */
+        const mh_real angle = 0.25f * (mh_real)i / 18;
+        const mh_real x = 28 + 18 * cosf(angle), y = 27 + 18 * sinf(angle);
+        const int a = i % ANCHORS;
+        const mh_real distance =
+            mh_sqrt(mh_squared(x - (mh_real)far[a].x_mm * 0.001f) + mh_squared(y - (mh_real)far[a].y_mm * 0.001f));
+        const struct mh_measurement taken = {.node = (mh_node_id)(10 + a),
+                                             .place = far[a],
+                                             .time = (mh_tick)i * 250,
+                                             .value = mh_q20_from_real(1.05f * distance + bias[a])};
+        if (mh_tracker_range.step(&state, (mh_tick)i * 250, &taken, 1, &estimate) != MH_OK) {
+            TEST_ASSERT_TRUE(i < 3);
+            continue;
+        }
+        const mh_real square = mh_squared(estimated_x() - x) + mh_squared(estimated_y() - y);
+        early = i < 40 ? mh_max(early, square) : early;
+        late = i > 1000 ? mh_max(late, square) : late;
+        sd = i == 40 ? estimate.covariance.xx : sd;
+    }
+    TEST_ASSERT_TRUE(late < 1 && late < early);
+    TEST_ASSERT_TRUE(estimate.covariance.xx < 0.5f * sd);
+}
+#endif
 
 int main(void)
 {
@@ -222,6 +544,20 @@ int main(void)
     RUN_TEST(one_range_at_a_time_does_not_lock_out);
     RUN_TEST(old_and_early_ranges_are_left_out);
     RUN_TEST(bad_arguments);
+    RUN_TEST(starts_with_one_range);
+    RUN_TEST(follows_a_manoeuvre);
+    RUN_TEST(two_ranges_keep_the_track);
+    RUN_TEST(negative_ranges_are_measurements);
+    RUN_TEST(a_range_of_1e9);
+    RUN_TEST(nodes_on_a_line);
+    RUN_TEST(stores_what_the_tolerance_demands);
+    RUN_TEST(is_handed_over);
+    RUN_TEST(saved_bytes_are_the_same_everywhere);
+    RUN_TEST(corrupt_bytes_are_refused);
+    RUN_TEST(restarts_elsewhere);
+#if MH_RANGE_BIASES_MAX >= 5
+    RUN_TEST(learns_scale_and_biases);
+#endif
     port_exit(UNITY_END() > 0);
     return 0;
 }
