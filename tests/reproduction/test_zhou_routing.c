@@ -8,7 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SEEDS = 20, NODES = 1000, SINK = NODES, MOTES = NODES + 1, LIFETIME = 35000 };
+#ifdef __SANITIZE_ADDRESS__ /* sanitizers take long, and look for other things than the mean over all seeds */
+enum { SEEDS = 1, SPREAD = 25 };
+#else
+enum { SEEDS = 20, SPREAD = 1 };
+#endif
+
+enum { NODES = 1000, SINK = NODES, MOTES = NODES + 1, LIFETIME = 35000 };
 
 #define RADIO_RANGE_M 100
 
@@ -144,7 +150,7 @@ static void check(double density, uint8_t capacity, double tolerance, double pub
     TEST_ASSERT_EQUAL_UINT(SEEDS * NODES, routes.connected);
     TEST_ASSERT_EQUAL_UINT(routes.connected, routes.delivered);
     TEST_ASSERT_EQUAL_UINT(0, routes.walked);
-    TEST_ASSERT_TRUE(fabs(routes.hops / (double)routes.delivered / published_hops - 1) <= tolerance);
+    TEST_ASSERT_TRUE(fabs(routes.hops / (double)routes.delivered / published_hops - 1) <= SPREAD * tolerance);
 }
 
 /* No local minima: greedy all the way. */
@@ -165,7 +171,7 @@ static void dense_fields_with_tables_as_on_motes(void)
 static void a_sparse_field(void)
 {
     const struct routes routes = route_all(2, MH_NEIGHBOURS_MAX);
-    TEST_ASSERT_TRUE(fabs(routes.connected / (double)SEEDS - 994) <= 0.5);
+    TEST_ASSERT_TRUE(fabs(routes.connected / (double)SEEDS - 994) <= SPREAD * 0.5);
     TEST_ASSERT_EQUAL_UINT(routes.connected, routes.delivered);
     TEST_ASSERT_TRUE(routes.walked > 0);
 }
