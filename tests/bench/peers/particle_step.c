@@ -117,7 +117,8 @@ int main(void)
         square = 0;
         for (int n = WARM; n < STEPS; n++) {
             const struct mh_vec2 target = truth(n);
-            square += pow(means[n].x - target.x, 2) + pow(means[n].y - target.y, 2);
+            const float x = means[n].x - target.x, y = means[n].y - target.y;
+            square += (double)(x * x + y * y);
         }
     }
     printf("{\"name\": \"Motehound\", \"us_per_step\": %.1f, \"rmse_m\": %.2f}\n", best_us,
