@@ -1,4 +1,4 @@
-/* Zhou, Wang, Wang and Zhou in an ideal network: the figures over speeds, noise, densities, tolerances and numbers of particles. */
+/* Zhou et al. in an ideal network: the figures over speeds, noise, densities, tolerances and numbers of particles. */
 #include "port.h"
 #include "unity.h"
 #include "zhou.h"

@@ -1,4 +1,4 @@
-/* Zhou, Wang, Wang and Zhou in an ideal network: the nominal experiment with each tracker and election, and what holds at every sample. The
+/* Zhou et al. in an ideal network: the nominal experiment with each tracker and election, and what holds at every sample. The
  * figures over speeds, noise and densities are in test_zhou_experiments.c. */
 #include "port.h"
 #include "simulation.h"

@@ -1,6 +1,5 @@
-/* The trackers `pftl`, `msl` and `centroid` fed with every range of the published field, without a network: 1,000 nodes, 2 hours, a target at
- * 10 mph, seeds 1 to 20. What whole simulations report is tested there; here it is what holds at every sample, and what a hand-over costs. */
-#include "experiment.h"
+/* The trackers `pftl`, `msl` and `centroid` fed with every range of the published field (1,000 nodes, 12 within the sensing range, 2 hours, a target at
+ * 10 mph, seeds 1 to 20) and handed over to a new head after each sample. */
 #include "motehound/centroid.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
@@ -8,6 +7,7 @@
 #include "unity.h"
 #include "world/mobility.h"
 #include "world/ranging.h"
+#include "zhou.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,15 +16,14 @@
 void setUp(void) {}
 void tearDown(void) {}
 
-enum { NODES = 1000, STEPS = 3600, SKIPPED = 5, INTERVAL = 2000, SEEDS = 20 };
+enum { NODES = 1000, STEPS = 3600, SKIPPED = 5, INTERVAL = 2000 };
 
-static const double range_m = 50;
+static const double range_m = 50, noise_m = 5, lambda = 12;
 
 struct run {
     const struct mh_tracker *tracker;
     const void *config;
-    double lambda, noise_m, tolerance_m;
-    bool handed_over; /* to a new head after each sample */
+    double tolerance_m;
 };
 
 struct result {
@@ -72,7 +71,7 @@ static struct result simulate(const struct run *run, uint64_t seed)
 {
     static struct point nodes[NODES], path[STEPS + 1];
     static struct mh_measurement measurements[NODES];
-    const double side_m = range_m * sqrt(NODES * 3.14159265358979 / run->lambda), speed_mps = 10 * 0.44704;
+    const double side_m = range_m * sqrt(NODES * 3.14159265358979 / lambda), speed_mps = 10 * 0.44704;
     const struct mobility mobility = {.width_m = side_m,
                                       .height_m = side_m,
                                       .margin_m = range_m,
@@ -81,7 +80,7 @@ static struct result simulate(const struct run *run, uint64_t seed)
                                       .speed_sd_mps = 0.2 * speed_mps,
                                       .heading_sd_rad = 3.14159265358979 / 8,
                                       .memory = 0.9};
-    const struct ranging ranging = {.range_m = range_m, .noise_m = run->noise_m, .seed = seed};
+    const struct ranging ranging = {.range_m = range_m, .noise_m = noise_m, .seed = seed};
     for (uint32_t i = 0; i < NODES; i++) {
         nodes[i].x_m = side_m * recipe_uniform(seed, RECIPE_NODE_X, i);
         nodes[i].y_m = side_m * recipe_uniform(seed, RECIPE_NODE_Y, i);
@@ -121,9 +120,7 @@ static struct result simulate(const struct run *run, uint64_t seed)
             sum.sink += share * off(&estimate, estimate.stored, path[n]) / range_m;
             sum.reports += estimate.flags & MH_ESTIMATE_REFRESHED ? share : 0;
         }
-        if (run->handed_over) {
-            hand_over(run);
-        }
+        hand_over(run);
     }
     return sum;
 }
@@ -131,77 +128,46 @@ static struct result simulate(const struct run *run, uint64_t seed)
 static struct result mean_of(const struct run *run)
 {
     struct result mean = {0};
-    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+    for (uint64_t seed = 1; seed <= ZHOU_SEEDS; seed++) {
         const struct result result = simulate(run, seed);
-        mean.localised += result.localised / SEEDS;
-        mean.sink += result.sink / SEEDS;
-        mean.reports += result.reports / SEEDS;
+        mean.localised += result.localised / ZHOU_SEEDS;
+        mean.sink += result.sink / ZHOU_SEEDS;
+        mean.reports += result.reports / ZHOU_SEEDS;
     }
-    printf("    %s, lambda %g, noise %g m, tolerance %g m%s: localised %.5f, sink %.5f, reports %.4f\n",
-           run->tracker->name, run->lambda, run->noise_m, run->tolerance_m, run->handed_over ? ", handed over" : "",
-           mean.localised, mean.sink, mean.reports);
+    printf("    %s: localised %.5f, sink %.5f, reports %.4f\n", run->tracker->name, mean.localised, mean.sink,
+           mean.reports);
     return mean;
 }
 
-static struct mh_pftl_config pftl_with(double noise_m, double tolerance_m)
-{
-    struct mh_pftl_config config;
-    mh_pftl_config_default(&config);
-    config.range_sd_m = (float)noise_m;
-    config.tolerance_m = (float)tolerance_m;
-    return config;
-}
-
-static void stored_is_within_the_tolerance_at_every_sample(void)
-{
-    const struct {
-        double noise_m, tolerance_m, localised, sink, reports;
-    } cases[] = {{5, 5, 0.0526, 0.0621, 0.553}, {1, 5, 0.01257, 0.0418, 0.296}, {5, 0, 0.0526, 0.0526, 1}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const struct mh_pftl_config config = pftl_with(cases[i].noise_m, cases[i].tolerance_m);
-        const struct run run = {&mh_tracker_pftl, &config, 12, cases[i].noise_m, cases[i].tolerance_m, false};
-        const struct result result = mean_of(&run);
-        expect_near("error, localised", result.localised, cases[i].localised, 0.04);
-        expect_near("error at the sink", result.sink, cases[i].sink, 0.04);
-        expect_near("reports a sample", result.reports, cases[i].reports, 0.05);
-    }
-}
-
-/* Two fixes are all that `pftl` knows of the past: a new head at every sample is as good as one for the whole track. `msl` hands over as many particles
- * as find room: 61, more than it has. */
+/* Two fixes are all that `pftl` knows of the past, and `msl` hands over as many particles as find room: 61, more than it has. So a new head at every
+ * sample is as good as one for the whole track, and so is what the sink has. Fewer seeds differ more. */
 static void a_hand_over_costs_no_accuracy(void)
 {
-    const struct mh_pftl_config pftl = pftl_with(5, 5);
+    struct mh_pftl_config pftl;
     struct mh_msl_config msl;
+    struct mh_centroid_config centroid;
+    mh_pftl_config_default(&pftl);
     mh_msl_config_default(&msl);
-    const struct run runs[] = {{&mh_tracker_pftl, &pftl, 12, 5, 5, true}, {&mh_tracker_msl, &msl, 12, 5, 0, true}};
-    const double expected[] = {0.0526, 0.1044}, tolerance[] = {0.04, 0.03};
-    for (size_t i = 0; i < 2; i++) {
-        const struct result result = mean_of(&runs[i]);
-        expect_near("error, localised", result.localised, expected[i], tolerance[i]);
-    }
-}
-
-/* nothing random is left in it but the recipe */
-static void centroids(void)
-{
-    const double densities[] = {8, 12, 16, 24}, expected[] = {0.23657, 0.18649, 0.15978, 0.12800};
-    struct mh_centroid_config config;
-    mh_centroid_config_default(&config);
-    for (size_t i = 0; i < 4; i++) {
-        const struct run run = {&mh_tracker_centroid, &config, densities[i], 5, 0, i % 2 == 0};
-        const struct result result = mean_of(&run);
-        expect_near("error, localised", result.localised, expected[i], 1e-4 / expected[i]);
-        expect_near("reports a sample", result.reports, 1, 1e-9);
+    mh_centroid_config_default(&centroid);
+    const struct {
+        struct run run;
+        double localised, sink, reports, share;
+    } cases[] = {{{&mh_tracker_pftl, &pftl, 5}, 0.0526, 0.0621, 0.553, 0.04},
+                 {{&mh_tracker_msl, &msl, 0}, 0.1044, 0.1044, 1, 0.03},
+                 {{&mh_tracker_centroid, &centroid, 0}, 0.18649, 0.18649, 1, 1e-4 / 0.18649}};
+    for (size_t i = 0; i < 3; i++) {
+        const struct result result = mean_of(&cases[i].run);
+        const double share = cases[i].share + (ZHOU_SEEDS < 20 ? 0.05 : 0);
+        expect_near("error, localised", result.localised, cases[i].localised, share);
+        expect_near("error at the sink", result.sink, cases[i].sink, share);
+        expect_near("reports a sample", result.reports, cases[i].reports, share + 0.01);
     }
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(stored_is_within_the_tolerance_at_every_sample);
     RUN_TEST(a_hand_over_costs_no_accuracy);
-    RUN_TEST(centroids);
     port_exit(UNITY_END() > 0);
     return 0;
 }
