@@ -58,8 +58,8 @@ static size_t sense(struct run *run)
     size_t detecting = 0;
     for (uint32_t i = 0; i < run->deployment.count; i++) {
         const struct recorded_node *node = &run->deployment.nodes[i];
-        const double distance_m = hypot(node->x_m - run->truth.x_m, node->y_m - run->truth.y_m);
-        run->detects[i] = ranging_detects(&run->ranging, run->sample, i, distance_m, &run->range_m[i]);
+        const double dx = node->x_m - run->truth.x_m, dy = node->y_m - run->truth.y_m;
+        run->detects[i] = ranging_detects(&run->ranging, run->sample, i, sqrt(dx * dx + dy * dy), &run->range_m[i]);
         detecting += run->detects[i];
     }
     return detecting;

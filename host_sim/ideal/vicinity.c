@@ -29,7 +29,9 @@ static int find_neighbours(struct vicinity *vicinity, const struct places *place
             room = larger;
         }
         vicinity->first[i] = used;
-        memcpy(vicinity->neighbours + used, found, near * sizeof *found);
+        if (near > 0) {
+            memcpy(vicinity->neighbours + used, found, near * sizeof *found);
+        }
         used += near;
     }
     vicinity->first[vicinity->count] = used;

@@ -108,8 +108,9 @@ enum mh_status mh_elect_first(const struct mh_election_config *config, const str
 bool mh_election_asks(const struct mh_election_config *config, const struct mh_cluster *cluster, mh_node_id id,
                       const struct mh_place *place, const struct mh_place *predicted);
 
-/* sacx: so few of those asked detect the target that the head is to ask all its other neighbours too, at the same instant: fewer than
- * least_answers. The prediction was wrong, and a position from few ranges may be, too; by the other rules it is made of those. */
+/* sacx: so few of those asked detect the target, fewer than least_answers, that the head is to ask all its other neighbours too, at the same
+ * instant if they are still within reach. The prediction was wrong, and a position from few ranges may be, too; by the other rules it is made
+ * of those. */
 bool mh_election_asks_all(const struct mh_election_config *config, size_t answers);
 
 /* The member, or the head, with identifier `id`; NULL if it is not of the cluster. */
