@@ -579,8 +579,8 @@ void mh_cluster_closed(struct mh_cluster_node *c, mh_tick instant, const struct 
                              own ? estimate->velocity : estimate->stored_velocity)) {
         return;
     }
-    if (estimate->flags & MH_ESTIMATE_REFRESHED) {
-        report(c, estimate);
-    }
     elect(c, estimate, measurements, count);
+    if (estimate->flags & MH_ESTIMATE_REFRESHED) {
+        report(c, estimate); /* after the track, which is in more of a hurry */
+    }
 }
