@@ -1,9 +1,11 @@
 /* A live mote under hostile frames, readings and clocks.
  *
- * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node, bit 4 the protocol. Then come events, each an opcode
- * and its operands; see next_event(). Whatever happens: what the mote transmits are frames that it would take itself,
+ * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node, bit 4 the protocol. The second: above 127 the
+ * protocol is `cluster`, bits 0-2 its election rule, bit 3 radios that sleep, bit 4 the sink. Then come events, each an opcode and its operands; see
+ * next_event(). Whatever happens: what the mote transmits are frames that it would take itself,
  * and what it reports are finite numbers. */
 #include "fuzz.h"
+#include "motehound/cluster.h"
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
 #include "motehound/geographic.h"
@@ -56,6 +58,9 @@ static void report(void *context, const struct mh_estimate *estimate)
     require(mh_finite(estimate->velocity.x) && mh_finite(estimate->velocity.y));
     require(estimate->covariance.xx >= 0 && estimate->covariance.yy >= 0 && mh_finite(estimate->covariance.xy));
 }
+
+/* The sample comes when the fuzzer has it come. */
+static void sense(void *context) { (void)context; }
 
 static uint8_t byte(struct input *input)
 {
@@ -149,6 +154,72 @@ static void near_hello(struct world *world, struct input *input)
     mh_mote_frame(&world->mote, world->now, frame, length);
 }
 
+/* What nodes around this one say in clusters, of an instant near now. */
+static void cluster_frame(struct world *world, struct input *input)
+{
+    const uint8_t kind = byte(input), who = byte(input), generation = byte(input), where = byte(input);
+    const int32_t instant = (int32_t)(world->now / INTERVAL * INTERVAL + (kind & 128 ? INTERVAL : 0));
+    const int32_t sender = who % 16, track = who / 16, x_mm = (where - 128) * 1000;
+    struct mh_message message = {.kind = (enum mh_message_kind)(MH_MESSAGE_ASK + kind % 7)};
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    switch (message.kind) {
+    case MH_MESSAGE_ASK:
+        message.as.ask = (mh_ask_t){.sender = sender,
+                                    .track = track,
+                                    .generation = generation,
+                                    .time_ms = instant,
+                                    .x_mm = x_mm,
+                                    .vx_mmps = 4000,
+                                    .everyone = byte(input) & 1};
+        break;
+    case MH_MESSAGE_ANSWER:
+        message.as.answer = (mh_answer_t){.sender = sender,
+                                          .time_ms = instant,
+                                          .x_mm = x_mm,
+                                          .y_mm = byte(input) * 500,
+                                          .value_q20 = (mh_q20)byte(input) << 19};
+        break;
+    case MH_MESSAGE_FORM:
+        message.as.form = (mh_form_t){
+            .sender = sender, .track = track, .generation = generation, .time_ms = instant, .count = where % 17};
+        for (int i = 0; i < MH_FORM_MEMBERS; i++) {
+            message.as.form.members[i] = i < where % 17 ? 7 + i : -1;
+        }
+        break;
+    case MH_MESSAGE_JOIN:
+        message.as.join = (mh_join_t){.sender = sender, .track = track, .generation = generation};
+        break;
+    case MH_MESSAGE_HAND_OVER:
+        message.as.hand_over = (mh_hand_over_t){.track = track,
+                                                .generation = generation,
+                                                .time_ms = instant,
+                                                .part = where % 8,
+                                                .parts = (uint8_t)(where % 8 + 1 + where / 64)};
+        message.as.hand_over.length = (uint8_t)bytes(input, message.as.hand_over.data, byte(input) % 65);
+        break;
+    case MH_MESSAGE_ALERT:
+        message.as.alert = (mh_alert_t){.sender = sender,
+                                        .track = track,
+                                        .generation = generation,
+                                        .time_ms = instant,
+                                        .x_mm = x_mm,
+                                        .value_q20 = (mh_q20)byte(input) << 19,
+                                        .lost = kind >> 6 & 1};
+        break;
+    default:
+        message.as.position = (mh_position_t){
+            .origin = sender, .track = track, .generation = generation, .time_ms = instant, .x_mm = x_mm};
+        break;
+    }
+    if (message.kind == MH_MESSAGE_HAND_OVER || message.kind == MH_MESSAGE_POSITION) {
+        const struct mh_place place = {0, 0, 0};
+        mh_geographic_address(&message, (mh_node_id)sender, (int16_t)byte(input), 7, &place);
+    }
+    require(mh_wire_encode(mh_wire_all, &message, frame, &length) == MH_OK);
+    mh_mote_frame(&world->mote, world->now, frame, length);
+}
+
 static void reading(struct world *world, struct input *input)
 {
     const int32_t high = byte(input), low = byte(input);
@@ -158,7 +229,7 @@ static void reading(struct world *world, struct input *input)
 
 static void next_event(struct world *world, struct input *input)
 {
-    switch (byte(input) % 8) {
+    switch (byte(input) % 9) {
     case 0:
         raw_frame(world, input);
         break;
@@ -181,6 +252,9 @@ static void next_event(struct world *world, struct input *input)
     case 6:
         near_hello(world, input);
         break;
+    case 7:
+        cluster_frame(world, input);
+        break;
     default:
         world->now += (mh_tick)byte(input) << byte(input) % 25;
         break;
@@ -192,11 +266,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const struct mh_tracker *const trackers[4] = {&mh_tracker_luo, &mh_tracker_diffusion, &mh_tracker_range,
                                                          &mh_tracker_diffusion};
-    static const struct mh_port port = {.transmit = transmit, .set_alarm = set_alarm, .report = report};
+    static const struct mh_port port = {.transmit = transmit, .set_alarm = set_alarm, .report = report, .sense = sense};
     static const struct mh_sensor_config sensor = {
         .q20_per_count = 1 << 8, .counts_max = 65535, .interval = INTERVAL, .threshold = MH_Q20(0.2f)};
     struct input input = {data, size};
-    const uint8_t choice = byte(&input);
+    const uint8_t choice = byte(&input), second = byte(&input);
     const struct mh_tracker *tracker = trackers[choice & 3];
     union {
         struct mh_luo_config luo;
@@ -214,16 +288,24 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static union {
         struct mh_collection collection;
         struct mh_geographic_collection geographic;
+        struct mh_cluster_node cluster;
     } protocol_state;
     struct mh_geographic_collection_config protocol_config;
     mh_geographic_collection_config_default(&protocol_config);
-    const int geographic = (choice & 16) != 0;
+    struct mh_cluster_config cluster_config;
+    const struct mh_place sink = {50000, 0, 0};
+    mh_cluster_config_default(&cluster_config, (enum mh_election)(second % 8 % MH_ELECTIONS), second & 16 ? 7 : 1,
+                              &sink);
+    cluster_config.election.interval = INTERVAL;
+    cluster_config.wake_period = second & 8 ? 250 : 0;
+    const int clusters = second >= 128, geographic = !clusters && (choice & 16) != 0;
     const struct mh_head_config head_config = {
         .tracker = tracker,
         .tracker_config = &tracker_config,
         .tracker_state = &tracker_state,
         .interval = INTERVAL,
-        .window = 900,
+        .window = clusters ? cluster_config.window : 900,
+        .tolerance = clusters ? INTERVAL / 4 : 0,
     };
     struct mh_clock clock;
     const struct mh_clock_config clock_config = {
@@ -232,8 +314,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .id = 7,
         .sensor = &sensor,
         .head = choice & 4 ? NULL : &head_config,
-        .protocol = geographic ? &mh_protocol_geographic : &mh_protocol_collection,
-        .protocol_config = geographic ? (const void *)&protocol_config : &protocol_config.collection,
+        .protocol = clusters     ? &mh_protocol_cluster
+                    : geographic ? &mh_protocol_geographic
+                                 : &mh_protocol_collection,
+        .protocol_config = clusters     ? (const void *)&cluster_config
+                           : geographic ? (const void *)&protocol_config
+                                        : &protocol_config.collection,
         .protocol_state = &protocol_state,
         .head_state = &head,
         .clock = choice & 32 ? &mh_clock_flooding : NULL,

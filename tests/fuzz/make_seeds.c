@@ -27,7 +27,7 @@ static int save_frame(const char *folder, const char *name, const struct mh_mess
 static int save_track(const char *folder, const char *name, uint8_t choice)
 {
     uint8_t input[2048] = {choice};
-    size_t length = 1;
+    size_t length = 2;
     const int geographic = choice & 16;
     for (int neighbour = 0; geographic && neighbour < 6; neighbour++) {
         const uint8_t event[] = {6, (uint8_t)neighbour, (uint8_t)(100 + 11 * neighbour), (uint8_t)(neighbour * 50), 1};
@@ -55,6 +55,50 @@ static int save_track(const char *folder, const char *name, uint8_t choice)
         }
         input[length++] = 4;
         input[length++] = 63; /* 1,008 ms */
+    }
+    return save(folder, name, input, length);
+}
+
+/* The mote hears neighbours and is handed a track; at every instant five nodes answer around a target that walks, it measures itself, and so on. */
+static int save_cluster(const char *folder, const char *name, uint8_t choice, uint8_t second)
+{
+    uint8_t input[2048] = {choice, second};
+    size_t length = 2;
+    for (int neighbour = 0; neighbour < 8; neighbour++) {
+        const uint8_t event[] = {6, (uint8_t)(8 + neighbour), (uint8_t)(100 + 8 * neighbour), (uint8_t)(neighbour * 30),
+                                 1};
+        for (size_t i = 0; i < sizeof event; i++) {
+            input[length++] = event[i];
+        }
+    }
+    const uint8_t track[] = {7, 4, 0x2A, 3, 0, 4, 0, 1, 2, 3, 9};
+    for (size_t i = 0; i < sizeof track; i++) {
+        input[length++] = track[i];
+    }
+    for (int instant = 0; instant < 15; instant++) {
+        const uint8_t opens[] = {7, 0, 0x29, (uint8_t)(3 + instant / 4), 128, 1, 3, 1, 50, (uint8_t)(instant % 2)};
+        for (size_t i = 0; i < sizeof opens; i++) {
+            input[length++] = opens[i];
+        }
+        for (int node = 0; node < 5; node++) {
+            const uint8_t event[] = {7,
+                                     1,
+                                     (uint8_t)(8 + node),
+                                     0,
+                                     (uint8_t)(110 + 9 * node),
+                                     (uint8_t)(node * 20),
+                                     (uint8_t)(20 + 10 * node + instant),
+                                     5,
+                                     0};
+            for (size_t i = 0; i < sizeof event; i++) {
+                input[length++] = event[i];
+            }
+        }
+        for (int k = 0; k < 4; k++) { /* time, and the fate of what was sent in it */
+            input[length++] = 4;
+            input[length++] = 16; /* 256 ms */
+            input[length++] = (uint8_t)(k == 3 ? instant % 3 : 0);
+        }
     }
     return save(folder, name, input, length);
 }
@@ -151,6 +195,13 @@ int main(int argc, char **argv)
         char name[20];
         snprintf(name, sizeof name, "track%u", choice);
         failed = failed || save_track(mote, name, choice);
+    }
+    for (int choice = 0; choice < 64; choice += 6) {
+        for (int second = 128; second < 160; second += 5) {
+            char name[20];
+            snprintf(name, sizeof name, "cluster%d_%d", choice, second);
+            failed = failed || save_cluster(mote, name, (uint8_t)choice, (uint8_t)second);
+        }
     }
     return failed ? 1 : 0;
 }
