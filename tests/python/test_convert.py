@@ -91,9 +91,50 @@ class Uwb(Case):
                         "--truth", self.out / "truth.csv", "--tracker", "range", "--out", self.folder / "replay"],
                        check=True, capture_output=True)
         metrics = json.loads((self.folder / "replay/summary.json").read_text())["metrics"]
-        self.assertLess(metrics["position_rmse_m"]["mean"], 1.0)
+        self.assertLess(metrics["position_rmse_m"]["mean"], 0.8095)
         self.assertTrue(0.5 < metrics["nees_median"]["mean"] < 3)
         self.assertEqual(metrics["track_lost"]["mean"], 0)
+
+
+class Plaza(Case):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "Small_anchors.csv").write_text("anchor_id,x_m,y_m\n6.0,-4,2.5\n1.0,3,0\n")
+        self.ranges("100.5,2.0,6.0,7.25\n99.0,2.0,1.0,-0.5\n")
+        (self.folder / "Small_truth.csv").write_text("t_s,x_m,y_m,heading_rad\n98,9,9,0\n99.5,1,2,3\n")
+
+    def ranges(self, rows):
+        (self.folder / "Small_ranges.csv").write_text("t_s,sender,anchor_id,range_m\n" + rows)
+
+    def test_known_recording(self):
+        result = convert("plaza", self.folder, self.out, "--name", "Small")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual((self.out / "nodes.csv").read_text().splitlines(),
+                         ["node,x_m,y_m,z_m", "6,-4.0000,2.5000,0.0000", "1,3.0000,0.0000,0.0000"])
+        self.assertEqual((self.out / "readings.csv").read_text().splitlines(),
+                         ["time_s,node,value", "0.000,1,-0.500000", "1.500,6,7.250000"])
+        # the position before the first range is left out
+        self.assertEqual((self.out / "truth.csv").read_text().splitlines(), ["time_s,x_m,y_m", "0.500,1.0000,2.0000"])
+
+    def test_refusals(self):
+        for rows, expected in (("", "no ranges"), ("1,2,7,5\n", "_ranges.csv:2: anchor_id: 7, expected one of"),
+                               ("1,2,1,2048\n", "_ranges.csv:2: range_m: 2048, expected -2047 to 2047"),
+                               ("1,2,1,nan\n", "_ranges.csv:2: range_m: `nan`, expected a finite number"),
+                               ("1000,2,1,5\n", "_truth.csv: no position after the first range")):
+            with self.subTest(expected):
+                self.ranges(rows)
+                self.assert_refused(convert("plaza", self.folder, self.out, "--name", "Small"), expected)
+
+    @unittest.skipUnless((DATA / "plaza").is_dir(), f"no recording in {DATA}")
+    @unittest.skipUnless(COMMAND, "the command motehound is not built")
+    def test_replay_learns_scale_and_biases(self):
+        self.assertEqual(convert("plaza", DATA / "plaza", self.out).returncode, 0)
+        subprocess.run([COMMAND, "replay", "--nodes", self.out / "nodes.csv", "--readings", self.out / "readings.csv",
+                        "--truth", self.out / "truth.csv", "--scenario", TOOLS.parent / "examples/plaza1.yaml",
+                        "--out", self.folder / "replay"], check=True, capture_output=True)
+        metrics = json.loads((self.folder / "replay/summary.json").read_text())["metrics"]
+        self.assertLess(metrics["position_rmse_m"]["mean"], 1.5)
+        self.assertTrue(0.5 < metrics["nees_median"]["mean"] < 3)
 
 
 class Orebro(Case):

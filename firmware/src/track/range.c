@@ -206,6 +206,9 @@ static bool start_anywhere(struct mh_range *range, uint8_t states)
             count++;
         }
     }
+    if (count < 3) {
+        return false;
+    }
     const mh_real moved = config->speed_mps * mh_seconds_between(m[0].time, time);
     const mh_real sd = mh_sqrt(mh_squared(config->range_sd_m) + mh_squared(moved) + largest);
     const struct mh_place origin = m[0].place;
