@@ -1,4 +1,4 @@
-"""python -m motehound_tools report | sweep | results | faults | picture | bound | export | view"""
+"""python -m motehound_tools report | sweep | results | zhou | faults | picture | bound | export | view"""
 
 from __future__ import annotations
 
@@ -37,6 +37,11 @@ def parser() -> argparse.ArgumentParser:
         "--markdown", type=Path, help="the page to write (docs/results.md; with --quick out/results-quick.md)"
     )
 
+    zhou = commands.add_parser("zhou", help="run the experiments zhou_* and write the page about them")
+    zhou.add_argument("--seeds", metavar="SEEDS", help="such as 0-2, instead of the experiments' own")
+    zhou.add_argument("--out", type=Path, default=Path("out/zhou"), help="where the sweeps go; finished runs are kept")
+    zhou.add_argument("--markdown", type=Path, default=Path("docs/zhou.md"), help="the page to write")
+
     faults = commands.add_parser("faults", help="run the scenarios of faults and write the table of faults")
     faults.add_argument("--runs", type=int, default=20)
     faults.add_argument(
@@ -63,7 +68,7 @@ def parser() -> argparse.ArgumentParser:
     shown.add_argument("--bus", metavar="URL", help="such as udpm://239.255.76.67:7667?ttl=0")
     view.add_argument("--port", type=int, default=5006, help="0: any that is free (%(default)s)")
 
-    for one in (sweep, results, faults, picture):
+    for one in (sweep, results, zhou, faults, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
     return top
 
@@ -89,6 +94,11 @@ def perform(arguments: argparse.Namespace) -> None:
         page = arguments.markdown or Path("out/results-quick.md" if arguments.quick else "docs/results.md")
         results.write(command.find(arguments.motehound), arguments.out, page, 5 if arguments.quick else 50)
         print(page)
+    elif arguments.command == "zhou":
+        from . import zhou
+
+        zhou.write(arguments.motehound, arguments.out, arguments.markdown, arguments.seeds)
+        print(arguments.markdown)
     elif arguments.command == "faults":
         from . import command, faults
 
