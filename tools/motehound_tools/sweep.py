@@ -211,8 +211,8 @@ def run(
     made_of = recipe(wanted, scenario, program)
     with owned(out):
         before = get_json(out / "manifest.json")
-        if before:
-            check_unchanged(out, before["recipe"], made_of)
+        if (out / "runs").exists():
+            check_unchanged(out, before["recipe"] if before else {}, made_of)
         manifest = {
             "begun": before["begun"] if before else now(),
             "ended": None,
@@ -259,16 +259,21 @@ def finish(
     for stale in ("table.csv", "table.parquet"):
         (out / stale).unlink(missing_ok=True)
     shutil.rmtree(scratch, ignore_errors=True)
-    scratch.mkdir()
+    scratch.mkdir(exist_ok=True)  # runs that a killed sweep left behind may still write there
     pool = cluster(scheduler) if scheduler else batch.local(jobs)
     function = Sent(perform) if scheduler else perform
     place = None if scheduler else str(scratch)
     with pool:
         calls = {name: (program, expected, scenario, place, *needed[name]) for name in missing}
-        for name, record in batch.each(pool, function, calls, out.name):
-            if CANNOT in record:
-                raise Failure(record[CANNOT])
-            put_json(folder / f"{name}.json", record)
-            records[name] = record
+        try:
+            for name, record in batch.each(pool, function, calls, out.name):
+                if CANNOT in record:
+                    raise Failure(record[CANNOT])
+                put_json(folder / f"{name}.json", record)
+                records[name] = record
+        except Exception as error:
+            if isinstance(error, Failure) or not scheduler:
+                raise
+            raise Failure(f"--scheduler {scheduler}: {type(error).__name__}: {error}".splitlines()[0]) from error
     shutil.rmtree(scratch, ignore_errors=True)
     return records

@@ -194,6 +194,18 @@ def test_a_run_that_fails_is_told(program: Path, file: Path, tmp_path: Path) -> 
     assert len(list(tmp_path.glob("out/runs/*.json"))) <= 1 and not (tmp_path / "out" / "table.csv").exists()
 
 
+def test_another_build_or_none_on_a_worker(program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = sweep.perform(str(program), "0" * 64, "luo_exp1", None, {}, 0)
+    assert "another build than the sweep's" in other[sweep.CANNOT]
+    expected = sweep.fingerprint(program)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    none = sweep.perform(str(tmp_path / "motehound"), expected, "luo_exp1", None, {}, 0)
+    assert "nor a motehound on the PATH" in none[sweep.CANNOT]
+    (tmp_path / "motehound").symlink_to(program)  # not where the sweep has it, but on the PATH
+    found = sweep.perform("/nowhere/motehound", expected, "luo_exp1", None, {"network.nodes": "80"}, 5)
+    assert found["seed"] == 5 and found["metrics"]["estimates"] is not None
+
+
 def test_two_sweeps_in_one_folder(program: Path, file: Path, tmp_path: Path) -> None:
     with sweep.owned(tmp_path / "out"), pytest.raises(Failure, match="another sweep is at work"):
         sweep.run(small(file), tmp_path / "out", named_program=str(program))

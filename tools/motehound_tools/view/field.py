@@ -166,7 +166,7 @@ class Field:
         known = value[np.isfinite(value)]
         low, high = np.percentile(known, (1, 99)) if len(known) and shade != "battery" else (0.0, 1.0)
         low = float(low) if shade == "energy" else 0.0  # who listens all the time spends much alike
-        self.mapper.low, self.mapper.high = low, max(float(high), low + 1e-9)
+        self.mapper.low, self.mapper.high = low, float(high) if high > low else low + 1.0
         self.colour_bar.title = SHADES[shade][1]
         dead = motes.xy[~motes.alive]
         self.sources["dead"].data = {"x": dead[:, 0], "y": dead[:, 1]}
