@@ -163,7 +163,8 @@ static bool few_are_asked(const struct mh_cluster_node *c)
 
 static void send_ask(struct mh_cluster_node *c)
 {
-    const bool everyone = c->everyone || rule_is_scm(c->config->election.rule) || few_are_asked(c);
+    c->everyone = c->everyone || c->cluster.count == 0 || few_are_asked(c);
+    const bool everyone = c->everyone || rule_is_scm(c->config->election.rule);
     const struct mh_message message = {.kind = MH_MESSAGE_ASK,
                                        .as.ask = {.sender = (int32_t)c->node->id,
                                                   .track = (int32_t)c->of.track,
@@ -579,7 +580,11 @@ void mh_cluster_closed(struct mh_cluster_node *c, mh_tick instant, const struct 
                              own ? estimate->velocity : estimate->stored_velocity)) {
         return;
     }
-    elect(c, estimate, measurements, count);
+    /* so few answers: the target is not where it was expected, or the position is worth little. First ask around. */
+    c->everyone = mh_election_asks_all(&c->config->election, count) && !c->everyone;
+    if (!c->everyone) {
+        elect(c, estimate, measurements, count);
+    }
     if (estimate->flags & MH_ESTIMATE_REFRESHED) {
         report(c, estimate); /* after the track, which is in more of a hurry */
     }
