@@ -166,9 +166,13 @@
 #endif
 #endif
 
-/* Largest number of states of a Kalman filter. A filter costs 4 (n + n (n + 1) / 2) bytes, whatever part of it is used. */
+/* Largest number of states of a Kalman filter that move, and of all of them: those that only are learned come on top. A filter costs
+ * 4 (n + n (n + 1) / 2) bytes for all n, whatever part of it is used. */
+#ifndef MH_KALMAN_MOVING_MAX
+#define MH_KALMAN_MOVING_MAX 4
+#endif
 #ifndef MH_KALMAN_STATES_MAX
-#define MH_KALMAN_STATES_MAX (4 + MH_RANGE_BIASES_MAX)
+#define MH_KALMAN_STATES_MAX (MH_KALMAN_MOVING_MAX + MH_RANGE_BIASES_MAX)
 #endif
 
 #if MH_REPORTS_MAX < 4 || MH_REPORTS_MAX > 4096
@@ -225,9 +229,10 @@
 #if MH_RANGE_HEARD_MAX < 3 || MH_RANGE_HEARD_MAX > 64
 #error "MH_RANGE_HEARD_MAX must be 3 to 64: a place in the plane needs three ranges"
 #endif
-#if MH_KALMAN_STATES_MAX < 4 + MH_RANGE_BIASES_MAX || MH_KALMAN_STATES_MAX > 16
+#if MH_KALMAN_MOVING_MAX < 4 || MH_KALMAN_STATES_MAX < MH_KALMAN_MOVING_MAX + MH_RANGE_BIASES_MAX ||                   \
+    MH_KALMAN_STATES_MAX > 16
 #error                                                                                                                 \
-    "MH_KALMAN_STATES_MAX must be 4 + MH_RANGE_BIASES_MAX to 16: the work grows with the cube, the stack with the square"
+    "MH_KALMAN_MOVING_MAX must be at least 4, MH_KALMAN_STATES_MAX that and MH_RANGE_BIASES_MAX to 16: work and stack grow with the square"
 #endif
 
 #endif

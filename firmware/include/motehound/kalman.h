@@ -6,7 +6,7 @@
  * one update each; they need not belong to the same instant.
  *
  * Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, chapter V. Several filters may run side by
- * side: nothing is shared. Symmetric matrices are packed as matrix.h says. Stack: 4 MH_KALMAN_STATES_MAX^2 bytes and a copy of the filter in
+ * side: nothing is shared. Symmetric matrices are packed as matrix.h says. Stack: 4 MH_KALMAN_MOVING_MAX^2 bytes and a copy of the filter in
  * predict, 8 MH_KALMAN_STATES_MAX and a copy of it in update, and a few registers.
  *
  * States that never change but are to be learned (a sensor's bias) come after those that move: with P = U D U' the time update leaves
@@ -20,9 +20,9 @@
 #include "motehound/status.h"
 
 struct mh_kalman {
-    uint8_t n;                                        /* states, 1 to MH_KALMAN_STATES_MAX */
-    uint8_t moving;                                   /* the first of them, which the time update moves */
-    mh_real x[MH_KALMAN_STATES_MAX];                  /* the estimate; its owner may read it, and shift it */
+    uint8_t n;                       /* states, 1 to MH_KALMAN_STATES_MAX */
+    uint8_t moving;                  /* the first of them, which the time update moves, at most MH_KALMAN_MOVING_MAX */
+    mh_real x[MH_KALMAN_STATES_MAX]; /* the estimate; its owner may read it, and shift it */
     mh_real ud[MH_PACKED_SIZE(MH_KALMAN_STATES_MAX)]; /* packed: D on the diagonal, U above it */
 };
 
@@ -36,7 +36,7 @@ struct mh_gate {
     mh_real surprise; /* of the last measurement: its innovation squared over the innovation's variance */
 };
 
-/* Begin at x with covariance P (packed). Errors: MH_ERR_ARGUMENT (n out of range), MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (P is not
+/* Begin with n moving states at x, with covariance P (packed). Errors: MH_ERR_ARGUMENT (n not 1 to MH_KALMAN_MOVING_MAX), MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (P is not
  * positive definite to the precision of mh_real). */
 enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real *x, const mh_real *P);
 

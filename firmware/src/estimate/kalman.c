@@ -11,7 +11,7 @@
  * put back to its floor. */
 static enum mh_status factor(uint8_t n, mh_real *P, bool raise)
 {
-    mh_real floor[MH_KALMAN_STATES_MAX];
+    mh_real floor[MH_KALMAN_MOVING_MAX];
     const mh_real *variance = P;
     for (uint_fast8_t j = 0; j < n; j++) {
         floor[j] = PIVOT_FLOOR * *variance;
@@ -46,7 +46,7 @@ static enum mh_status factor(uint8_t n, mh_real *P, bool raise)
 
 enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real *x, const mh_real *P)
 {
-    if (n < 1 || n > MH_KALMAN_STATES_MAX) {
+    if (n < 1 || n > MH_KALMAN_MOVING_MAX) {
         return MH_ERR_ARGUMENT;
     }
     struct mh_kalman started;
@@ -89,24 +89,57 @@ enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real 
     return MH_OK;
 }
 
-/* Copy what is in use: x from `from` on, P from that column on. */
-static void copy(struct mh_kalman *to, const struct mh_kalman *filter, uint8_t from)
+/* Copy what is in use; four states, which are the usual, without a call. */
+static void copy(struct mh_kalman *to, const struct mh_kalman *filter)
 {
-    const int first = MH_PACKED(0, from);
-    const int last = MH_PACKED(0, filter->n);
-    memcpy(to->x + from, filter->x + from, (size_t)(filter->n - from) * sizeof to->x[0]);
-    memcpy(to->ud + first, filter->ud + first, (size_t)(last - first) * sizeof to->ud[0]);
+    if (filter->n <= 4) {
+        memcpy(to->x, filter->x, 4 * sizeof to->x[0]);
+        memcpy(to->ud, filter->ud, MH_PACKED_SIZE(4) * sizeof to->ud[0]);
+    } else {
+        memcpy(to->x, filter->x, filter->n * sizeof to->x[0]);
+        memcpy(to->ud, filter->ud, (size_t)MH_PACKED_SIZE(filter->n) * sizeof to->ud[0]);
+    }
+    to->n = filter->n;
+    to->moving = filter->moving;
+}
+
+/* The rows of U that tie the states that do not move to the others: F times themselves. */
+static enum mh_status move_ties(struct mh_kalman *next, const struct mh_kalman *filter, const mh_real *F)
+{
+    const uint8_t n = filter->moving;
+    for (uint_fast8_t j = 0; j < n; j++) {
+        for (uint_fast8_t k = n; k < filter->n; k++) {
+            const mh_real *column = filter->ud + MH_PACKED(0, k);
+            mh_real sum = 0;
+            for (uint_fast8_t m = 0; m < n; m++) {
+                sum += F[m] * column[m];
+            }
+            if (!mh_finite(sum)) {
+                return MH_ERR_NOT_FINITE;
+            }
+            next->ud[MH_PACKED(j, k)] = sum;
+        }
+        F += n;
+    }
+    return MH_OK;
 }
 
 enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q)
 {
     const uint8_t n = filter->moving;
     struct mh_kalman next;
-    mh_real W[MH_KALMAN_STATES_MAX][MH_KALMAN_STATES_MAX]; /* F U */
+    mh_real W[MH_KALMAN_MOVING_MAX][MH_KALMAN_MOVING_MAX]; /* F U */
     mh_real *p = next.ud;
-    copy(&next, filter, n);
+    next.n = filter->n;
+    next.moving = n;
+    if (filter->n > n) {
+        copy(&next, filter);
+        if (move_ties(&next, filter, F) != MH_OK) {
+            return MH_ERR_NOT_FINITE;
+        }
+    }
     for (uint_fast8_t j = 0; j < n; j++) {
-        mh_real scaled[MH_KALMAN_STATES_MAX]; /* row j of F U D */
+        mh_real scaled[MH_KALMAN_MOVING_MAX]; /* row j of F U D */
         uint_fast8_t first = 0;               /* F is zero before it in this row, and so is F U */
         const mh_real *column = filter->ud;
         mh_real x = 0;
@@ -135,23 +168,11 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
             }
             *p++ = sum;
         }
-        for (uint_fast8_t k = n; k < filter->n; k++) {
-            const mh_real *still = filter->ud + MH_PACKED(0, k);
-            mh_real sum = 0;
-            for (uint_fast8_t m = first; m < n; m++) {
-                sum += F[m] * still[m];
-            }
-            if (!mh_finite(sum)) {
-                return MH_ERR_NOT_FINITE;
-            }
-            next.ud[MH_PACKED(j, k)] = sum;
-        }
         F += n;
     }
     enum mh_status status = factor(n, next.ud, true);
     if (status == MH_OK) {
-        next.n = filter->n;
-        copy(filter, &next, 0);
+        copy(filter, &next);
     }
     return status;
 }
@@ -188,8 +209,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
 {
     const uint8_t n = filter->n;
     struct mh_kalman before;
-    before.n = n;
-    copy(&before, filter, 0);
+    copy(&before, filter);
     mh_real f[MH_KALMAN_STATES_MAX]; /* U' h */
     mh_real g[MH_KALMAN_STATES_MAX]; /* D f, which becomes P h column by column */
     mh_real predicted = 0;           /* h' P h */
@@ -241,7 +261,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
         sum += filter->x[j];
     }
     if (!fits || !mh_finite(sum)) {
-        copy(filter, &before, 0);
+        copy(filter, &before);
         return MH_ERR_NOT_FINITE;
     }
     if (gate) {

@@ -170,6 +170,48 @@ static void constant_velocity_model(void)
     }
 }
 
+/* two states that move and two that do not, against a filter to which all four move, two of them by an identity; with one variance read */
+static void states_that_do_not_move(void)
+{
+    const mh_real x[4] = {1, 2, 0, 0}, P2[3] = {4, 1, 3}, F2[4] = {1, 0.5f, -0.25f, 1}, Q2[3] = {0.5f, 0.25f, 0.5f};
+    const mh_real P4[10] = {4, 1, 3, 0, 0, 2, 0, 0, 0, 0.5f};
+    const mh_real F4[16] = {1, 0.5f, 0, 0, -0.25f, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const mh_real Q4[10] = {0.5f, 0.25f, 0.5f, 0, 0, 0, 0, 0, 0, 0};
+    struct mh_kalman a, b;
+    mh_real left[10], right[10];
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_init(&a, 2, x, P2));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_append(&a, 0, 2));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_append(&a, 0, 0.5f));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_init(&b, 4, x, P4));
+    seed = 5;
+    for (int i = 0; i < 20; i++) {
+        const mh_real h[4] = {draw(), draw(), 1, draw()}, innovation = draw();
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_update(&a, h, innovation, 0.5f, NULL));
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_update(&b, h, innovation, 0.5f, NULL));
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_predict(&a, F2, Q2));
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_predict(&b, F4, Q4));
+        mh_kalman_covariance(&a, left);
+        mh_kalman_covariance(&b, right);
+        for (int k = 0; k < 10; k++) {
+            TEST_ASSERT_FLOAT_WITHIN(1e-4f, right[k], left[k]);
+        }
+        for (int k = 0; k < 4; k++) {
+            TEST_ASSERT_FLOAT_WITHIN(1e-4f, b.x[k], a.x[k]);
+            TEST_ASSERT_FLOAT_WITHIN(1e-4f, right[MH_PACKED(k, k)], mh_kalman_variance(&a, (uint8_t)k));
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_init(&a, 2, x, P2));
+    const struct mh_kalman before = a;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_kalman_append(&a, NAN, 1));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_kalman_append(&a, 0, INFINITY));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_kalman_append(&a, 0, 0));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &a, sizeof a);
+    while (a.n < MH_KALMAN_STATES_MAX) {
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_append(&a, 0, 1));
+    }
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CAPACITY, mh_kalman_append(&a, 0, 1));
+}
+
 static void bad_input_changes_nothing(void)
 {
     struct mh_kalman filter, before;
@@ -181,7 +223,7 @@ static void bad_input_changes_nothing(void)
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_init(&filter, 2, x, P));
     memcpy(&before, &filter, sizeof filter);
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_kalman_init(&filter, 0, x, P));
-    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_kalman_init(&filter, MH_KALMAN_STATES_MAX + 1, x, P));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_kalman_init(&filter, MH_KALMAN_MOVING_MAX + 1, x, P));
     TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_kalman_init(&filter, 2, bad_x, P));
     TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_kalman_init(&filter, 2, x, bad_P));
     TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_kalman_init(&filter, 2, x, indefinite));
@@ -252,6 +294,7 @@ int main(void)
     RUN_TEST(bad_input_changes_nothing);
     RUN_TEST(what_does_not_fit_changes_nothing);
     RUN_TEST(gate_keeps_outliers_out_but_not_for_good);
+    RUN_TEST(states_that_do_not_move);
     port_exit(UNITY_END() > 0);
     return 0;
 }
