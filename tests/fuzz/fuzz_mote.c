@@ -1,10 +1,11 @@
 /* A live mote under hostile frames, readings and clocks.
  *
  * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node, bit 4 the protocol. The second: above 127 the
- * protocol is `cluster`, bits 0-2 its election rule, bit 3 radios that sleep, bit 4 the sink. Then come events, each an opcode and its operands; see
+ * protocol is `cluster`, bits 0-2 its election rule, bit 3 radios that sleep, bit 4 the sink, bits 5-6 the tracker if not 0. Then come events, each an opcode and its operands; see
  * next_event(). Whatever happens: what the mote transmits are frames that it would take itself,
  * and what it reports are finite numbers. */
 #include "fuzz.h"
+#include "motehound/centroid.h"
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
@@ -12,6 +13,8 @@
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/mote.h"
+#include "motehound/msl.h"
+#include "motehound/pftl.h"
 #include "motehound/range.h"
 
 #include <string.h>
@@ -22,6 +25,9 @@ union tracker_state {
     struct mh_luo luo;
     struct mh_diffusion diffusion;
     struct mh_range range;
+    struct mh_pftl pftl;
+    struct mh_msl msl;
+    struct mh_centroid_state centroid;
 };
 
 struct world {
@@ -195,7 +201,7 @@ static void cluster_frame(struct world *world, struct input *input)
                                                 .generation = generation,
                                                 .time_ms = instant,
                                                 .part = where % 8,
-                                                .parts = (uint8_t)(where % 8 + 1 + where / 64)};
+                                                .parts = where < 64 ? (uint8_t)(where % 8 + 1) : byte(input)};
         message.as.hand_over.length = (uint8_t)bytes(input, message.as.hand_over.data, byte(input) % 65);
         break;
     case MH_MESSAGE_ALERT:
@@ -266,22 +272,38 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const struct mh_tracker *const trackers[4] = {&mh_tracker_luo, &mh_tracker_diffusion, &mh_tracker_range,
                                                          &mh_tracker_diffusion};
+    static const struct mh_tracker *const trackers_of_clusters[4] = {&mh_tracker_range, &mh_tracker_pftl,
+                                                                     &mh_tracker_msl, &mh_tracker_centroid};
     static const struct mh_port port = {.transmit = transmit, .set_alarm = set_alarm, .report = report, .sense = sense};
     static const struct mh_sensor_config sensor = {
         .q20_per_count = 1 << 8, .counts_max = 65535, .interval = INTERVAL, .threshold = MH_Q20(0.2f)};
     struct input input = {data, size};
     const uint8_t choice = byte(&input), second = byte(&input);
-    const struct mh_tracker *tracker = trackers[choice & 3];
+    const struct mh_tracker *tracker =
+        second >= 128 && (second & 96) ? trackers_of_clusters[second >> 5 & 3] : trackers[choice & 3];
     union {
         struct mh_luo_config luo;
         struct mh_diffusion_config diffusion;
         struct mh_range_config range;
+        struct mh_pftl_config pftl;
+        struct mh_msl_config msl;
+        struct mh_centroid_config centroid;
     } tracker_config;
     mh_luo_config_default(&tracker_config.luo);
     if (tracker == &mh_tracker_diffusion) {
         mh_diffusion_config_default(&tracker_config.diffusion);
     } else if (tracker == &mh_tracker_range) {
         mh_range_config_default(&tracker_config.range);
+        if (second >= 128) {
+            tracker_config.range.sensing_range_m = 50.0f;
+            tracker_config.range.tolerance_m = 5.0f;
+        }
+    } else if (tracker == &mh_tracker_pftl) {
+        mh_pftl_config_default(&tracker_config.pftl);
+    } else if (tracker == &mh_tracker_msl) {
+        mh_msl_config_default(&tracker_config.msl);
+    } else if (tracker == &mh_tracker_centroid) {
+        mh_centroid_config_default(&tracker_config.centroid);
     }
     static union tracker_state tracker_state;
     static struct mh_head head;

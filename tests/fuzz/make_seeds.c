@@ -1,7 +1,12 @@
-/* make_seeds WIRE_FOLDER MOTE_FOLDER: good inputs of fuzz_wire.c and fuzz_mote.c, for the fuzzer to start from. */
+/* make_seeds WIRE_FOLDER MOTE_FOLDER TRACK_FOLDER: good inputs of fuzz_wire.c, fuzz_mote.c and fuzz_track.c, for the fuzzer to start from. */
+#include "motehound/centroid.h"
+#include "motehound/msl.h"
+#include "motehound/pftl.h"
+#include "motehound/range.h"
 #include "motehound/wire.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static int save(const char *folder, const char *name, const uint8_t *bytes, size_t length)
 {
@@ -103,9 +108,52 @@ static int save_cluster(const char *folder, const char *name, uint8_t choice, ui
     return save(folder, name, input, length);
 }
 
+/* A track as `tracker` saves it after three instants with five ranges, then six instants of fuzz_track.c. */
+static int save_saved(const char *folder, const char *name, uint8_t choice, const struct mh_tracker *tracker,
+                      const void *config)
+{
+    static union {
+        struct mh_range range;
+        struct mh_pftl pftl;
+        struct mh_msl msl;
+        struct mh_centroid_state centroid;
+    } state;
+    uint8_t input[512] = {choice};
+    size_t length = 0;
+    enum mh_status status = tracker->init(&state, config, 2000);
+    for (int i = 1; i <= 3 && status == MH_OK; i++) {
+        struct mh_measurement set[5];
+        struct mh_estimate estimate;
+        memset(set, 0, sizeof set);
+        for (int k = 0; k < 5; k++) {
+            const struct mh_vec2 off = {(mh_real)(k % 3 * 20 - 8 * i), (mh_real)(k / 3 * 30 - 10)};
+            set[k].node = (mh_node_id)k;
+            set[k].place.x_mm = k % 3 * 20000;
+            set[k].place.y_mm = k / 3 * 30000;
+            set[k].time = (mh_tick)i * 2000;
+            set[k].value = mh_q20_from_real(mh_sqrt(mh_squared(off.x) + mh_squared(off.y)));
+        }
+        status = tracker->step(&state, (mh_tick)i * 2000, set, 5, &estimate);
+    }
+    if (status != MH_OK || tracker->save(&state, input + 2, &length) != MH_OK) {
+        return -1;
+    }
+    input[1] = (uint8_t)length;
+    length += 2;
+    for (int i = 0; i < 6; i++) {
+        input[length++] = (uint8_t)(5 + 32 * i);
+        for (int k = 0; k < 5; k++) {
+            const uint8_t node[] = {(uint8_t)(108 + 10 * k), (uint8_t)(120 + 9 * (k % 3)), (uint8_t)(30 + 5 * k)};
+            memcpy(input + length, node, sizeof node);
+            length += sizeof node;
+        }
+    }
+    return save(folder, name, input, length);
+}
+
 int main(int argc, char **argv)
 {
-    if (argc != 3) {
+    if (argc != 4) {
         return 2;
     }
     const struct mh_message beacon = {.kind = MH_MESSAGE_BEACON,
@@ -138,7 +186,7 @@ int main(int argc, char **argv)
                                                 .number = 9,
                                                 .round = 5,
                                                 .hops = 2}};
-    const char *wire = argv[1], *mote = argv[2];
+    const char *wire = argv[1], *mote = argv[2], *track = argv[3];
     const struct mh_message hello = {.kind = MH_MESSAGE_HELLO,
                                      .as.hello = {.sender = 8, .x_mm = 7000, .y_mm = -3000, .sequence = 5}};
     const struct mh_message landmark = {.kind = MH_MESSAGE_LANDMARK,
@@ -197,11 +245,26 @@ int main(int argc, char **argv)
         failed = failed || save_track(mote, name, choice);
     }
     for (int choice = 0; choice < 64; choice += 6) {
-        for (int second = 128; second < 160; second += 5) {
+        for (int second = 128; second < 256; second += 21) {
             char name[20];
             snprintf(name, sizeof name, "cluster%d_%d", choice, second);
             failed = failed || save_cluster(mote, name, (uint8_t)choice, (uint8_t)second);
         }
     }
+    struct mh_range_config range;
+    struct mh_pftl_config pftl;
+    struct mh_msl_config msl;
+    struct mh_centroid_config centroid;
+    mh_range_config_default(&range);
+    mh_pftl_config_default(&pftl);
+    mh_msl_config_default(&msl);
+    mh_centroid_config_default(&centroid);
+    range.sensing_range_m = 50;
+    range.height_m = 0;
+    failed = failed || save_saved(track, "range", 0, &mh_tracker_range, &range) ||
+             save_saved(track, "range_errors", 1, &mh_tracker_range, &range) ||
+             save_saved(track, "pftl", 2, &mh_tracker_pftl, &pftl) ||
+             save_saved(track, "msl", 3, &mh_tracker_msl, &msl) ||
+             save_saved(track, "centroid", 4, &mh_tracker_centroid, &centroid);
     return failed ? 1 : 0;
 }

@@ -1,0 +1,131 @@
+/* Tracks that are handed over: load() on any bytes.
+ *
+ * The first byte chooses the tracker, the second the length of the track that follows; then come instants, each with its distance in time and its
+ * measurements. Whatever is loaded: a refusal leaves the state as init() made it, estimates are finite numbers with covariances that are one, and
+ * what is saved again is taken again. */
+#include "fuzz.h"
+#include "motehound/centroid.h"
+#include "motehound/msl.h"
+#include "motehound/pftl.h"
+#include "motehound/range.h"
+
+#include <string.h>
+
+enum { INTERVAL = 2000, INSTANTS_MAX = 20, NODES = 6 };
+
+union state {
+    struct mh_range range;
+    struct mh_pftl pftl;
+    struct mh_msl msl;
+    struct mh_centroid_state centroid;
+};
+
+struct input {
+    const uint8_t *data;
+    size_t left;
+};
+
+static uint8_t byte(struct input *input)
+{
+    if (input->left == 0) {
+        return 0;
+    }
+    input->left--;
+    return *input->data++;
+}
+
+static void check(const struct mh_estimate *estimate)
+{
+    const struct mh_sym2 c = estimate->covariance;
+    require(mh_finite(estimate->position.x) && mh_finite(estimate->position.y));
+    require(mh_finite(estimate->velocity.x) && mh_finite(estimate->velocity.y));
+    require(mh_finite(estimate->stored.x) && mh_finite(estimate->stored.y));
+    require(mh_finite(estimate->stored_velocity.x) && mh_finite(estimate->stored_velocity.y));
+    require(mh_finite(c.xx) && mh_finite(c.xy) && mh_finite(c.yy) && c.xx >= 0 && c.yy >= 0);
+    require((double)c.xy * (double)c.xy <= (double)c.xx * (double)c.yy * (1 + 1e-5));
+    require(mh_coordinate_valid(estimate->origin.x_mm) && mh_coordinate_valid(estimate->origin.y_mm));
+}
+
+static mh_tick time_of(const uint8_t *track)
+{
+    return (mh_tick)track[0] << 24 | (mh_tick)track[1] << 16 | (mh_tick)track[2] << 8 | track[3];
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const struct mh_tracker *const trackers[] = {&mh_tracker_range, &mh_tracker_range, &mh_tracker_pftl,
+                                                        &mh_tracker_msl, &mh_tracker_centroid};
+    static union state state, as_begun, other;
+    struct mh_range_config range;
+    struct mh_pftl_config pftl;
+    struct mh_msl_config msl;
+    struct mh_centroid_config centroid;
+    mh_range_config_default(&range);
+    mh_pftl_config_default(&pftl);
+    mh_msl_config_default(&msl);
+    mh_centroid_config_default(&centroid);
+    range.sensing_range_m = 50;
+    range.tolerance_m = 5;
+    const void *const configs[] = {&range, &range, &pftl, &msl, &centroid};
+    struct input input = {data, size};
+    const uint8_t choice = byte(&input);
+    const uint8_t which = choice % 5;
+    const struct mh_tracker *const tracker = trackers[which];
+    if (which == 1) {
+        range.bias_sd_m = 1;
+        range.scale_sd = 0.1f;
+    }
+    pftl.particles = msl.particles = (uint16_t)(choice & 128 ? 3 : 50);
+    uint8_t track[MH_TRACK_BYTES_MAX + 8];
+    memset(track, 0, sizeof track);
+    size_t length = byte(&input);
+    length = length < input.left ? length : input.left;
+    length = length < sizeof track ? length : sizeof track;
+    memcpy(track, input.data, length);
+    input.data += length;
+    input.left -= length;
+    memset(&state, 0, sizeof state);
+    require(tracker->init(&state, configs[which], INTERVAL) == MH_OK);
+    as_begun = state;
+    if (tracker->load(&state, track, length) != MH_OK) {
+        require(memcmp(&state, &as_begun, sizeof state) == 0);
+        return 0;
+    }
+    mh_tick now = time_of(track);
+    struct mh_estimate estimate;
+    if (tracker->predict(&state, now, &estimate) == MH_OK) {
+        check(&estimate);
+    }
+    for (int i = 0; i < INSTANTS_MAX && input.left > 0; i++) {
+        struct mh_measurement set[NODES];
+        const uint8_t what = byte(&input), count = what % (NODES + 1);
+        struct mh_place centre;
+        memset(set, 0, sizeof set);
+        now += (mh_tick)INTERVAL << (what & 128 ? byte(&input) % 20 : 0);
+        centre = tracker->predict(&state, now, &estimate) == MH_OK
+                     ? mh_place_from_offset(&estimate.origin, estimate.position)
+                     : (struct mh_place){0, 0, 0};
+        for (uint8_t k = 0; k < count; k++) {
+            const struct mh_vec2 off = {(mh_real)byte(&input) - 128, (mh_real)byte(&input) - 128};
+            set[k].node = k;
+            set[k].place = mh_place_from_offset(&centre, off);
+            set[k].time = now;
+            set[k].value = ((mh_q20)byte(&input) - 20) * MH_Q20_ONE;
+        }
+        if (tracker->step(&state, now, set, count, &estimate) == MH_OK) {
+            check(&estimate);
+        }
+        if (what & 64) {
+            tracker->restart(&state);
+        }
+        if (tracker->save(&state, track, &length) == MH_OK) {
+            require(length <= MH_TRACK_BYTES_MAX);
+            require(tracker->init(&other, configs[which], INTERVAL) == MH_OK);
+            require(tracker->load(&other, track, length) == MH_OK);
+            if (what & 32) {
+                state = other;
+            }
+        }
+    }
+    return 0;
+}
