@@ -278,7 +278,7 @@ static mh_real element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast
         const mh_real *column = filter->ud + MH_PACKED(0, k);
         const mh_real left = i == k ? 1.0f : column[i];
         const mh_real right = j == k ? 1.0f : column[j];
-        sum += left * right * column[k];
+        sum += left * column[k] * right; /* in this order finite if P is: U may be as large as sqrt(P / D) */
     }
     return sum;
 }

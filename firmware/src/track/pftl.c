@@ -59,6 +59,20 @@ static bool usable(const struct mh_pftl *pftl, const struct mh_measurement *m)
     return mh_within(mh_q20_to_real(m->value), -slack, pftl->config.sensing_range_m + slack);
 }
 
+/* The mean place of the n >= 1 nodes whose ranges are usable. */
+static struct mh_vec2 centre_of(const struct search *search, uint16_t n)
+{
+    struct mh_vec2 centre = {0, 0};
+    for (size_t j = 0; j < search->count; j++) {
+        if (usable(search->pftl, &search->measurements[j])) {
+            const struct mh_vec2 at = mh_place_relative(&search->measurements[j].place, &search->pftl->origin);
+            centre.x += at.x / (mh_real)n;
+            centre.y += at.y / (mh_real)n;
+        }
+    }
+    return centre;
+}
+
 /* Draw particles from, .. in the region and sum their squared residuals. */
 static void draw(struct search *search, uint16_t from)
 {
@@ -142,7 +156,7 @@ static enum mh_status localise(struct search *search, struct mh_vec2 expected, u
             region->outer += (mh_real)level * widening;
             region->half_angle = mh_min(MH_PI, (mh_real)(1 + level) * level_0.half_angle);
         } else {
-            region->apex = mh_centroid(search->measurements, search->count, &pftl->origin);
+            region->apex = centre_of(search, n);
             region->inner = 0.0f;
             region->outer = pftl->config.sensing_range_m;
             region->half_angle = MH_PI;
@@ -216,7 +230,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         }
         pftl->origin = measurements[0].place;
         pftl->origin.z_mm = 0;
-        answer.position = mh_centroid(measurements, count, &pftl->origin);
+        answer.position = centre_of(&search, n);
         const mh_real radius = pftl->config.sensing_range_m;
         answer.covariance.xx = answer.covariance.yy = radius * radius / (4.0f * (mh_real)n);
         answer.flags = MH_ESTIMATE_STARTED;

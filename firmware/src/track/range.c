@@ -169,6 +169,18 @@ static void hear(struct mh_range *range, const struct mh_measurement *m)
     range->heard[at] = *m;
 }
 
+/* Drop the ranges that are too old to start from, before the ticks wrap and they seem new. */
+static void forget(struct mh_range *range, mh_tick time)
+{
+    uint8_t kept = 0;
+    for (uint8_t i = 0; i < range->heard_count; i++) {
+        if (mh_ticks_between(range->heard[i].time, time) <= LOST_TICKS + (int32_t)range->interval) {
+            range->heard[kept++] = range->heard[i];
+        }
+    }
+    range->heard_count = kept;
+}
+
 /* The range less what is known of its errors; *variance: of what is not. */
 static mh_q20 corrected(const struct mh_range *range, uint8_t states, const struct mh_measurement *m, mh_real *variance)
 {
@@ -432,6 +444,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         range->tracking = false;
     }
     const bool among = range->config.sensing_range_m > 0;
+    forget(range, time);
     for (size_t i = 0; i < count && !among; i++) {
         hear(range, &measurements[i]);
     }
@@ -508,6 +521,9 @@ static struct mh_vec2 get_velocity(const uint8_t **at)
 static enum mh_status save(const void *state, uint8_t *bytes, size_t *length)
 {
     const struct mh_range *range = state;
+    if (range == NULL || bytes == NULL || length == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
     if (!range->tracking || !range->followed.known) {
         return MH_NONE;
     }
@@ -538,6 +554,9 @@ static bool place_valid(const struct mh_place *place)
 static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
 {
     struct mh_range *range = state;
+    if (range == NULL || bytes == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
     if (length != MH_RANGE_SAVED) {
         return MH_ERR_CORRUPT;
     }
@@ -558,7 +577,8 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
     const struct mh_place stored = get_place(&at);
     const struct mh_vec2 stored_velocity = get_velocity(&at);
     struct mh_followed followed = {.known = false};
-    if (!good || !place_valid(&stored) ||
+    /* bytes that are no covariance to the precision of mh_real show when it is factored anew */
+    if (!good || !place_valid(&stored) || advance(range, &filter, 0) != MH_OK ||
         mh_followed_report(&followed, reported, mh_place_relative(&stored, &place), stored_velocity) != MH_OK) {
         return MH_ERR_CORRUPT;
     }

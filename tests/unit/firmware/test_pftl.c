@@ -271,6 +271,22 @@ static void ranges_that_cannot_be(void)
     TEST_ASSERT_EQUAL_UINT16(0, estimate.measurements);
 }
 
+/* nor are their nodes among those about which the target is looked for */
+static void nodes_whose_ranges_cannot_be(void)
+{
+    const struct mh_pftl_config config = nominal();
+    begin(&config);
+    for (uint8_t i = 0; i < 2; i++) {
+        put(0, 5000, 5000, 1e9f);
+        put(1, 20, 30, 11);
+        put(2, 40, 30, 11);
+        mh_tracker_pftl.restart(&pftl);
+        TEST_ASSERT_EQUAL_INT(MH_OK, step((1 + (mh_tick)i) * INTERVAL, 3));
+        TEST_ASSERT_EQUAL_UINT16(2, estimate.measurements);
+        TEST_ASSERT_TRUE(error_of(estimate.position, 30, 30) < (i == 0 ? 1e-3f : 50.0f));
+    }
+}
+
 /* Ranges that contradict each other give all particles a likelihood of 0 in mh_real; the best of them is still the best. */
 static void no_particle_fits(void)
 {
@@ -435,6 +451,7 @@ int main(void)
     RUN_TEST(one_or_two_ranges);
     RUN_TEST(nodes_on_a_line);
     RUN_TEST(ranges_that_cannot_be);
+    RUN_TEST(nodes_whose_ranges_cannot_be);
     RUN_TEST(no_particle_fits);
     RUN_TEST(numbers_of_particles_at_their_limits);
     RUN_TEST(finds_a_target_that_jumps);

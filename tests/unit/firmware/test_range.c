@@ -138,6 +138,20 @@ static void coasts_then_starts_again(void)
     assert_at(0.01f, 15, 8);
 }
 
+/* two ranges of 50 days ago, whose ticks have come again since, and a third: no place */
+static void ticks_that_wrap_make_no_range_new(void)
+{
+    const mh_tick days = 86400000;
+    begin(0.1f);
+    range_all(100, 5, 6);
+    TEST_ASSERT_EQUAL_INT(MH_NONE, step(100, 2));
+    TEST_ASSERT_EQUAL_INT(MH_NONE, step(20 * days, 0));
+    TEST_ASSERT_EQUAL_INT(MH_NONE, step(40 * days, 0));
+    range_all(1100, 5, 6);
+    set[0] = set[2];
+    TEST_ASSERT_EQUAL_INT(MH_NONE, step(1100, 1));
+}
+
 static void outliers_are_refused(void)
 {
     begin(0.1f);
@@ -473,9 +487,38 @@ static void corrupt_bytes_are_refused(void)
     memcpy(bad, good, sizeof bad);
     bad[20] |= 0x80;
     TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_tracker_range.load(&state, bad, length));
+    memcpy(bad, good, sizeof bad);
+    bad[22] = 0x71; /* finite factors of an infinite covariance */
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_tracker_range.load(&state, bad, length));
     TEST_ASSERT_EQUAL_INT(MH_NONE, mh_tracker_range.predict(&state, 5000, &estimate));
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.load(&state, good, length));
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.predict(&state, 5000, &estimate));
+}
+
+/* Factors of a covariance that is none in mh_real, for the variance of y is lost in what it gets from x: what comes out is one. */
+static void a_loaded_covariance_is_one(void)
+{
+    uint8_t bytes[MH_TRACK_BYTES_MAX];
+    size_t length;
+    begin_in_field(5);
+    sample(1, 0, 0, NODES);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.save(&state, bytes, &length));
+    bytes[22] = 0x4B; /* 1e7 */
+    bytes[23] = 0x18;
+    begin_in_field(5);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.load(&state, bytes, length));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.predict(&state, SAMPLE, &estimate));
+    const struct mh_sym2 *c = &estimate.covariance;
+    TEST_ASSERT_TRUE(c->xy * (c->xy / c->xx) < c->yy);
+    /* U so large that its square is infinite, D so small that P is not */
+    bytes[22] = 0x70; /* 1.6e29 */
+    bytes[23] = 0x00;
+    bytes[24] = 0x13; /* 1.6e-27 */
+    bytes[25] = 0x00;
+    begin_in_field(5);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.load(&state, bytes, length));
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_range.predict(&state, SAMPLE, &estimate));
+    TEST_ASSERT_TRUE(mh_finite(estimate.covariance.xx));
 }
 
 /* told that it is elsewhere, it starts anew among those who hear it, at once */
@@ -539,6 +582,7 @@ int main(void)
     RUN_TEST(follows_a_straight_line);
     RUN_TEST(starts_with_three_that_agree);
     RUN_TEST(coasts_then_starts_again);
+    RUN_TEST(ticks_that_wrap_make_no_range_new);
     RUN_TEST(outliers_are_refused);
     RUN_TEST(gate_does_not_lock_out);
     RUN_TEST(one_range_at_a_time_does_not_lock_out);
@@ -554,6 +598,7 @@ int main(void)
     RUN_TEST(is_handed_over);
     RUN_TEST(saved_bytes_are_the_same_everywhere);
     RUN_TEST(corrupt_bytes_are_refused);
+    RUN_TEST(a_loaded_covariance_is_one);
     RUN_TEST(restarts_elsewhere);
 #if MH_RANGE_BIASES_MAX >= 5
     RUN_TEST(learns_scale_and_biases);
