@@ -164,6 +164,7 @@ struct mh_cluster_node {
         bool begun;
         mh_node_id from, track;
         int32_t generation;
+        uint8_t parts;
         uint32_t came; /* bit k: part k */
         uint16_t length;
         uint8_t bytes[MH_CLUSTER_CARRIED_MAX];

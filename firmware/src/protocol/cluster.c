@@ -297,8 +297,8 @@ static void time_jumped(void *state, mh_tick now)
         c->role = MH_CLUSTER_SLEEPER;
     }
     c->set = 0;
-    c->knows = c->asked = c->handing = c->listening = false;
-    c->answer_ahead = 0;
+    c->knows = c->asked = c->handing = c->listening = c->incoming.begun = false;
+    c->answer_ahead = c->shunned_count = c->shunned_next = 0;
     c->followed.known = false;
     if (c->node->port->network(c->node->context, now, &c->time)) {
         begin(c);

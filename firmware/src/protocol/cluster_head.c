@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#define PARTS_MAX ((MH_CLUSTER_CARRIED_MAX + MH_HAND_OVER_BYTES - 1) / MH_HAND_OVER_BYTES)
 #define MISSES_MAX 2 /* instants without an answer: the first asked members only, the second everyone */
 
 static mh_tick interval_of(const struct mh_cluster_node *c) { return c->config->election.interval; }
@@ -466,25 +467,27 @@ void mh_cluster_hear_part(struct mh_cluster_node *c, mh_node_id from, const mh_h
 {
     const int32_t age = mh_ticks_between((mh_tick)part->time_ms, c->time), limit = 2 * (int32_t)interval_of(c);
     const size_t begin = (size_t)part->part * MH_HAND_OVER_BYTES;
+    const bool is_last = part->part + 1 == part->parts;
     const struct mh_cluster_of offered = {
         .track = (mh_node_id)part->track, .generation = part->generation, .head = c->node->id};
-    if (!c->node->is_head || c->role == MH_CLUSTER_SINK || age < 0 || age > limit ||
-        begin + part->length > sizeof c->incoming.bytes ||
+    if (!c->node->is_head || c->role == MH_CLUSTER_SINK || age < 0 || age > limit || part->parts > PARTS_MAX ||
+        (!is_last && part->length != MH_HAND_OVER_BYTES) || begin + part->length > sizeof c->incoming.bytes ||
         (c->knows && c->of.track == offered.track && !mh_cluster_outranks(&offered, &c->of))) {
         return;
     }
     if (!c->incoming.begun || c->incoming.from != from || c->incoming.track != offered.track ||
-        c->incoming.generation != offered.generation) {
+        c->incoming.generation != offered.generation || c->incoming.parts != part->parts) {
         c->incoming.begun = true;
         c->incoming.from = from;
         c->incoming.track = offered.track;
         c->incoming.generation = offered.generation;
+        c->incoming.parts = part->parts;
         c->incoming.came = 0;
         c->incoming.length = 0;
     }
     memcpy(c->incoming.bytes + begin, part->data, part->length);
     c->incoming.came |= (uint32_t)1 << part->part;
-    if (part->part + 1 == part->parts) {
+    if (is_last) {
         c->incoming.length = (uint16_t)(begin + part->length);
     }
     if (c->incoming.length > 0 && c->incoming.came == ((uint32_t)1 << part->parts) - 1) {

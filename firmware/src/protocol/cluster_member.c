@@ -4,13 +4,14 @@
 
 #include <string.h>
 
-#define SAMPLE_TIME 15    /* ticks in which a sample that was asked for comes, if one does */
-#define ANSWER_TIME 12    /* ticks that an answer takes, acknowledged */
-#define ANSWER_TRIES 2    /* beside what the radio does on its own */
-#define JOIN_SLOT 4       /* ticks between the members' answers to a form_t */
-#define ALERT_WINDOWS 5   /* over which those who have found the target spread */
-#define FINDS_ENOUGH 3    /* samples of a target far off, after which it needs no other */
-#define SILENT_INSTANTS 2 /* after which a head counts as dead */
+#define SAMPLE_TIME 15     /* ticks in which a sample that was asked for comes, if one does */
+#define ANSWER_TIME 12     /* ticks that an answer takes, acknowledged */
+#define ANSWER_TRIES 2     /* beside what the radio does on its own */
+#define JOIN_SLOT 4        /* ticks between the members' answers to a form_t */
+#define ALERT_WINDOWS 5    /* over which those who have found the target spread */
+#define FINDS_ENOUGH 3     /* samples of a target far off, after which it needs no other */
+#define SILENT_INSTANTS 2  /* after which a head counts as dead */
+#define FORGOTTEN 86400000 /* ticks: a day */
 
 static mh_tick interval_of(const struct mh_cluster_node *c) { return c->config->election.interval; }
 
@@ -274,8 +275,31 @@ void mh_cluster_sampled(struct mh_cluster_node *c, const struct mh_measurement *
     mh_cluster_listen(c, time + ANSWER_TIME);
 }
 
+static bool is_forgotten(const struct mh_cluster_node *c, mh_tick time)
+{
+    return mh_ticks_between(time, c->time) > FORGOTTEN;
+}
+
+static mh_tick not_past(const struct mh_cluster_node *c, mh_tick time)
+{
+    return mh_tick_before(c->time, time) ? time : c->time;
+}
+
+/* What is long past is not to come back when the ticks wrap. */
+static void forget(struct mh_cluster_node *c)
+{
+    c->knows = c->knows && !is_forgotten(c, c->of.heard);
+    c->asked = c->asked && !is_forgotten(c, c->asked_for);
+    c->followed.known = c->followed.known && !is_forgotten(c, c->followed.time);
+    c->search_until = not_past(c, c->search_until);
+    for (uint8_t i = 0; i < c->shunned_count; i++) {
+        c->shunned[i].until = not_past(c, c->shunned[i].until);
+    }
+}
+
 void mh_cluster_watch(struct mh_cluster_node *c)
 {
+    forget(c);
     const mh_tick instant = c->instant;
     const uint8_t role = c->role;
     if (role == MH_CLUSTER_HEAD) {

@@ -558,6 +558,24 @@ static void a_track_comes_in_parts_in_any_order_and_once(void)
     TEST_ASSERT_EQUAL(1, saw.leads);
 }
 
+/* Of two parts, the last has come; and then one of so many that their number does not fit, or that leaves a gap. */
+static void parts_that_do_not_fit_make_no_track(void)
+{
+    pass(LATER + 160);
+    hand_over(LATER + 252, 5, 1, 2, 11);
+    for (unsigned parts = 3; parts <= UINT8_MAX; parts++) {
+        hand_over(LATER + 252, 5, 0, (uint8_t)parts, (int16_t)(20 + parts));
+    }
+    TEST_ASSERT_EQUAL(0, saw.leads);
+    struct mh_message gap = {
+        .kind = MH_MESSAGE_HAND_OVER,
+        .as.hand_over = {.track = HEAD, .generation = 7, .time_ms = (int32_t)LATER, .parts = 2, .length = 63}};
+    mh_geographic_address(&gap, HEAD, 12, NODE, &node.place);
+    hear(LATER + 252, &gap);
+    hand_over(LATER + 252, 7, 1, 2, 13);
+    TEST_ASSERT_EQUAL(0, saw.leads);
+}
+
 /* The tracker does not know it: then anew. */
 static void a_track_that_is_corrupt_is_begun_anew(void)
 {
@@ -760,6 +778,45 @@ static void the_sink_extrapolates(void)
     TEST_ASSERT_EQUAL(0, saw.sensed);
 }
 
+/* An alarm a day, late as they are then. */
+static void pass_days(mh_tick from, uint8_t days)
+{
+    for (uint8_t day = 0; day <= days; day++) {
+        cluster->timer(&state, AHEAD + from + day * 86400000u);
+    }
+}
+
+/* Half a wrap of the ticks after a node has heard of a track, its time is no later than that to the ticks' arithmetic. */
+static void what_is_long_past_does_not_come_back(void)
+{
+    const mh_tick month = 30u * 86400000u, then = month + LATER;
+    pass(LATER - 1);
+    hear_ask(LATER + 4, LATER, HEAD, 3, false);
+    state.shunned[0].id = NEXT;
+    state.shunned[0].until = LATER + MH_CLUSTER_SHUN_TIME;
+    state.shunned_count = 1;
+    pass_days(LATER, 30);
+    pass(then + T);
+    const unsigned before = saw.sensed;
+    pass(then + T + 5 * config.watch_period); /* it watches, and only when it is its turn */
+    TEST_ASSERT_EQUAL(before + 5, saw.sensed);
+    TEST_ASSERT_TRUE(mh_ticks_between(state.shunned[0].until, state.time) >= 0);
+
+    come_up(SINK);
+    pass(LATER + T);
+    tell_the_sink(LATER + T + 600, LATER + T, 50000, 4000, 3, HEAD);
+    pass_days(LATER + T, 30);
+    const mh_tick now = mh_tick_aligned(0, T, month + LATER + T);
+    pass(now);
+    const unsigned told = saw.told;
+    pass(now + 3 * T);
+    TEST_ASSERT_EQUAL(told, saw.told); /* of a day ago and more, nothing */
+    tell_the_sink(now + 3 * T + 600, now + 3 * T, 70000, 0, 1, OTHER);
+    pass(now + 4 * T);
+    TEST_ASSERT_EQUAL(told + 1, saw.told);
+    TEST_ASSERT_EQUAL_INT32(70000, saw.estimate.origin.x_mm);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -781,6 +838,7 @@ int main(void)
     RUN_TEST(a_track_that_comes_makes_a_head);
     RUN_TEST(a_cluster_that_has_joined_is_announced_once);
     RUN_TEST(a_track_comes_in_parts_in_any_order_and_once);
+    RUN_TEST(parts_that_do_not_fit_make_no_track);
     RUN_TEST(a_track_that_is_corrupt_is_begun_anew);
     RUN_TEST(old_and_outranked_tracks_are_not_taken);
     RUN_TEST(the_track_goes_to_the_elected_head);
@@ -791,6 +849,7 @@ int main(void)
     RUN_TEST(heads_of_different_tracks_become_one_where_they_meet);
     RUN_TEST(frames_of_other_times_are_not_believed);
     RUN_TEST(the_sink_extrapolates);
+    RUN_TEST(what_is_long_past_does_not_come_back);
     port_exit(UNITY_END() > 0);
     return 0;
 }
