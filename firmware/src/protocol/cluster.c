@@ -84,7 +84,7 @@ static void arm(struct mh_cluster_node *c)
 {
     mh_tick next = c->time;
     bool wanted = next_sending(c, &next);
-    for (uint8_t timer = 0; timer < MH_CLUSTER_TIMERS; timer++) {
+    for (int timer = 0; timer < MH_CLUSTER_TIMERS; timer++) {
         if (mh_cluster_is_set(c, (enum mh_cluster_timer)timer) && (!wanted || mh_tick_before(c->due[timer], next))) {
             next = c->due[timer];
             wanted = true;
@@ -387,7 +387,7 @@ static void timer(void *state, mh_tick now)
     if (!comes(c, now)) {
         return;
     }
-    for (uint8_t k = 0; k < MH_CLUSTER_TIMERS; k++) {
+    for (int k = 0; k < MH_CLUSTER_TIMERS; k++) {
         if (mh_cluster_is_set(c, (enum mh_cluster_timer)k) && !mh_tick_before(c->time, c->due[k])) {
             mh_cluster_clear(c, (enum mh_cluster_timer)k);
             at[k](c);

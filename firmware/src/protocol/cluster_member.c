@@ -216,8 +216,9 @@ static mh_tick alert_time(const struct mh_cluster_node *c, mh_q20 range)
     const mh_real reach =
         mh_clamp(mh_q20_to_real(range) / c->config->election.sensing_range_m, 0, 1.0f) * ALERT_WINDOWS;
     const uint8_t windows = reach < ALERT_WINDOWS ? (uint8_t)reach : ALERT_WINDOWS - 1;
+    const mh_tick half = c->config->wake_length / 2;
     return mh_rendezvous_after(&c->rendezvous, c->time, windows) +
-           (mh_tick)((reach - (mh_real)windows) * (mh_real)(c->config->wake_length / 2));
+           (mh_tick)((reach - (mh_real)windows) * (mh_real)half);
 }
 
 /* The target was found by a node that nobody has asked. It counts as a generation behind the cluster that it has heard of until it has formed its
