@@ -30,7 +30,7 @@
  * tolerance, it is the state itself, and REFRESHED. step() gives MH_NONE while there is no track. interest() does not exist: whoever hears
  * the target reports.
  *
- * Cost of a step with 12 ranges of one instant: about 800 additions and multiplications, 60 roots and divisions (docs/costs.md). A saved track
+ * Cost of a step with 12 ranges of one instant: about 800 additions and multiplications, 50 roots and divisions (docs/costs.md). A saved track
  * takes 60 bytes; what was learned of the ranges' errors is not in it. */
 #ifndef MOTEHOUND_RANGE_H
 #define MOTEHOUND_RANGE_H
