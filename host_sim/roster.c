@@ -104,6 +104,14 @@ struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct
                               .sync = kit->synchronised ? is_sink ? &kit->root : &kit->other : NULL};
 }
 
+void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place place)
+{
+    if (kit->protocol.protocol == &mh_protocol_cluster) {
+        kit->protocol.config.cluster.sink = sink;
+        kit->protocol.config.cluster.sink_place = place;
+    }
+}
+
 int roster_complete(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size)
 {
     const size_t nodes = roster->deployment.count;
@@ -116,10 +124,7 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     const struct scenario_field field = scenario_field(scenario);
     roster->sink_x_m = field.sink_x_m;
     roster->sink_y_m = field.sink_y_m;
-    if (roster->kit.protocol.protocol == &mh_protocol_cluster) {
-        roster->kit.protocol.config.cluster.sink = roster->sink_id;
-        roster->kit.protocol.config.cluster.sink_place = place_from_metres(field.sink_x_m, field.sink_y_m, 0);
-    }
+    mote_kit_tell_sink(&roster->kit, roster->sink_id, place_from_metres(field.sink_x_m, field.sink_y_m, 0));
     return 0;
 }
 

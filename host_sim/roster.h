@@ -36,6 +36,9 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
 /* Complete the kit where the caller has filled in sensor, tracker and protocol; `epoch` is a sampling instant. */
 void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh_tick epoch);
 
+/* Reports go to mote `sink` at `place`, which some protocols want to know beforehand. */
+void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place place);
+
 /* Mote `id` at `place`: the sink, or a node with a sensor; its clock is ideal. It points into the kit. */
 struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_sink);
 

@@ -21,6 +21,7 @@ struct share {
 struct remote {
     struct worker_pool *pool;
     const char *scenario;
+    struct host_mote sink;
     uint32_t count;
     unsigned workers;
     uint32_t *worker_of;            /* each mote */
@@ -125,7 +126,11 @@ static int assign(struct remote *remote, char *error, size_t error_size)
 {
     for (unsigned w = 0; w < remote->workers; w++) {
         motehound_worker_assign_t message = {.scenario = (char *)remote->scenario,
-                                             .count = (int32_t)remote->shares[w].mote_count};
+                                             .count = (int32_t)remote->shares[w].mote_count,
+                                             .sink = (int32_t)remote->sink.id,
+                                             .sink_x_mm = remote->sink.place.x_mm,
+                                             .sink_y_mm = remote->sink.place.y_mm,
+                                             .sink_z_mm = remote->sink.place.z_mm};
         REQUEST(remote, w, WORKER_ASSIGN, assign, message, error, error_size);
     }
     if (await(remote, error, error_size) != 0) {
@@ -247,6 +252,9 @@ static int add(void *state, uint32_t mote, const struct host_mote *what)
 {
     struct remote *remote = state;
     remote->motes[remote->order[mote]] = worker_mote_message(mote, what);
+    if (!what->sensor) {
+        remote->sink = *what;
+    }
     return 0;
 }
 

@@ -56,8 +56,10 @@ static void forget_motes(struct motes *motes)
     *motes = (struct motes){0};
 }
 
-static int make_motes(struct motes *motes, const char *scenario, uint32_t count, char *error, size_t error_size)
+static int make_motes(struct motes *motes, const motehound_worker_assign_t *message, char *error, size_t error_size)
 {
+    const char *scenario = message->scenario;
+    const uint32_t count = (uint32_t)message->count;
     forget_motes(motes);
     if (scenario_init(&motes->scenario) != 0) {
         return fail(error, error_size, "out of memory");
@@ -66,6 +68,8 @@ static int make_motes(struct motes *motes, const char *scenario, uint32_t count,
         mote_kit_make(&motes->kit, &motes->scenario, error, error_size) != 0) {
         return -1;
     }
+    mote_kit_tell_sink(&motes->kit, (mh_node_id)message->sink,
+                       (struct mh_place){message->sink_x_mm, message->sink_y_mm, message->sink_z_mm});
     motes->count = count;
     motes->numbers = malloc((count + 1) * sizeof *motes->numbers);
     motes->order = malloc((count + 1) * sizeof *motes->order);
@@ -106,7 +110,7 @@ static int add_mote(struct motes *motes, const motehound_worker_mote_t *message)
     }
     struct host_mote what =
         mote_kit_mote(&motes->kit, (mh_node_id)message->id,
-                      (struct mh_place){message->x_mm, message->y_mm, message->z_mm}, message->is_head != 0);
+                      (struct mh_place){message->x_mm, message->y_mm, message->z_mm}, message->is_sink != 0);
     what.clock =
         (struct local_clock){message->offset_us, message->drift_ppm, message->wander_ppm, message->wander_phase};
     motes->here[mote] = motes->added;
@@ -217,8 +221,7 @@ static bool is_next(struct worker *worker, int64_t session, int64_t number, bool
 static void on_assign(struct worker *worker, const motehound_worker_assign_t *message)
 {
     worker->assigned = true;
-    if (message->count < 0 || make_motes(&worker->motes, message->scenario, (uint32_t)message->count, worker->error,
-                                         sizeof worker->error) != 0) {
+    if (message->count < 0 || make_motes(&worker->motes, message, worker->error, sizeof worker->error) != 0) {
         answer_error(worker, message->number);
     } else {
         answer_done(worker, message->number);

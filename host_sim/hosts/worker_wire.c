@@ -110,7 +110,7 @@ motehound_worker_mote_t worker_mote_message(uint32_t mote, const struct host_mot
                                      .x_mm = what->place.x_mm,
                                      .y_mm = what->place.y_mm,
                                      .z_mm = what->place.z_mm,
-                                     .is_head = what->head != NULL,
+                                     .is_sink = what->sensor == NULL,
                                      .offset_us = what->clock.offset_us,
                                      .drift_ppm = what->clock.drift_ppm,
                                      .wander_ppm = what->clock.wander_ppm,

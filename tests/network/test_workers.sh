@@ -39,6 +39,14 @@ accepted "$MOTEHOUND" run bench_s2 --set source.duration_s=15 --out s2
 accepted "$MOTEHOUND" run bench_s2 --set source.duration_s=15 --out s22 --bus "$bus" --workers 2
 same s2 s22
 
+# clusters: sensors sample when they are asked, any node leads, radios sleep
+clusters=("$MOTEHOUND" run zhou_real --set source.duration_s=60 --set clock.sync=flooding --set clock.drift_ppm=20 --set clock.sync_period_s=4 --set faults.dead_share=0.1
+    --set faults.dead_from_s=30 --seed 3)
+accepted "${clusters[@]}" --out clusters --log
+accepted "${clusters[@]}" --out clusters2 --bus "$bus" --workers 2 --drop-share 0.02
+same clusters clusters2
+awk -F, 'NR == 1 {for (i = 1; i <= NF; i++) at[$i] = i} NR == 2 {exit !($at["estimates"] > 10 && $at["clusters"] > 0)}' clusters/runs.csv || complain "no cluster led"
+
 # a worker from elsewhere joins; it ends when the run does
 "$MOTEHOUND" worker --bus "$bus" 2>joined.txt & joined=$!
 accepted "${small[@]}" --out alone

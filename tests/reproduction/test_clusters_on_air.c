@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #define NEAR_M 50 /* the sensing range: an estimate farther off follows nothing */
 #define SAMPLES_SKIPPED 5
@@ -153,6 +154,20 @@ static void a_partition_on_the_targets_way(void)
     }
 }
 
+/* 1,001 motes for 2 h. */
+static void two_hours_take_seconds(void)
+{
+#ifdef __SANITIZE_ADDRESS__
+    TEST_IGNORE_MESSAGE("the sanitizer takes its time");
+#endif
+    struct simulation_counters counters;
+    const clock_t begin = clock();
+    const struct followed followed =
+        follow("zhou_real", "tracker.name=pftl protocol.election=sac", 7200, 0, 1, &counters);
+    expect_at_most("processor time, s", (double)(clock() - begin) / CLOCKS_PER_SEC, 10);
+    expect_at_least("estimates", followed.estimates, 3550);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -160,6 +175,7 @@ int main(void)
     RUN_TEST(heads_die);
     RUN_TEST(a_jam_interrupts_the_track);
     RUN_TEST(a_partition_on_the_targets_way);
+    RUN_TEST(two_hours_take_seconds);
     port_exit(UNITY_END() > 0);
     return 0;
 }

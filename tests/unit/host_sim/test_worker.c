@@ -129,7 +129,7 @@ static int32_t motes[3] = {100, 7, 50000};
 /* Joined, with three motes, the first of them the head; up. */
 static void bring_up(void)
 {
-    motehound_worker_mote_t three[3] = {{.mote = motes[0], .id = 9, .is_head = 1},
+    motehound_worker_mote_t three[3] = {{.mote = motes[0], .id = 9, .is_sink = 1},
                                         {.mote = motes[1], .id = 1, .x_mm = 5000},
                                         {.mote = motes[2], .id = 2, .y_mm = 5000}};
     call(SESSION);
