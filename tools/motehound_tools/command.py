@@ -21,13 +21,15 @@ def find(named: str | None) -> Path:
             if path is None:
                 raise Failure(f"{wanted}: no such program")
             return Path(path)
-    built = [path for path in ROOT.glob("build/host*/motehound") if path.is_file() and os.access(path, os.X_OK)]
-    if built:
-        return max(built, key=lambda path: path.stat().st_mtime)
+    # The builds of tools/demo and of the developer, then those with another compiler or sanitizers.
+    for pattern in ("build/run/motehound", "build/host/motehound"), ("build/host*/motehound",):
+        built = [path for one in pattern for path in ROOT.glob(one) if path.is_file() and os.access(path, os.X_OK)]
+        if built:
+            return max(built, key=lambda path: path.stat().st_mtime)
     installed = shutil.which("motehound")
     if installed:
         return Path(installed)
-    raise Failure("motehound: not found in build/host or on the PATH; build it or name it with --motehound")
+    raise Failure("motehound: not found in build/run, build/host or on the PATH; build it or name it with --motehound")
 
 
 def run(

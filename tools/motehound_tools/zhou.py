@@ -118,7 +118,7 @@ def reproduced() -> list[Wanted]:
         rows.append(
             Wanted(f"MSL, {speed} mph: error", ("zhou_fig8", ERRORS, "MSL"), ERROR, value, 0.03, axis(SPEED, speed))
         )
-    for name, label, key, at, error, sink, reports in (
+    for name, label, key, point, error, sink, reports in (
         ("zhou_fig8", "4 mph", SPEED, 4, 0.0540, 0.0765, 0.264),
         ("zhou_fig8", "10 mph", SPEED, 10, 0.0526, 0.0621, 0.553),
         ("zhou_fig8", "25 mph", SPEED, 25, 0.0576, 0.0636, 0.743),
@@ -132,7 +132,7 @@ def reproduced() -> list[Wanted]:
             ("at the sink", SINK, sink, 0.04),
             ("reports a sample", REPORTS, reports, 0.05),
         ):
-            rows.append(Wanted(f"PFTL, {label}: {what}", (name, ERRORS, "PFTL"), metric, value, within, axis(key, at)))
+            rows.append(Wanted(f"PFTL, {label}: {what}", (name, ERRORS, "PFTL"), metric, value, within, axis(key, point)))
     for tolerance, sink, reports in ((1, 0.0523, 0.978), (10, 0.1129, 0.216), (20, 0.1808, 0.126)):
         place, at = ("zhou_fig8", EPSILON, "PFTL"), axis(SPEED, 10) | axis(TOLERANCE, tolerance)
         rows.append(Wanted(f"PFTL, tolerance {tolerance} m: at the sink", place, SINK, sink, 0.04, at))
