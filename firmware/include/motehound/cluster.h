@@ -30,6 +30,9 @@
  *
  * Hellos go three times in the first MH_CLUSTER_START ticks, in which all listen, and then once a hello period, in wake windows.
  *
+ * All motes but the sink have a head's configuration, with the same interval and window as here, epoch 0 and some tolerance: who is asked samples
+ * when it hears of it.
+ *
  * Needs the network's time on all motes (mh_mote_config.clock), to within a quarter of a wake window, and does nothing before it is known. The owner of the
  * mote has to tell the fate of what it sends (mh_mote_sent). Of a form_t's members MH_FORM_MEMBERS are told, so many can be asked by the rules
  * with members. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define HELLOS_AT_START 3
+#define MEMORY ((int32_t)1 << 30)    /* ticks: what is known of a track is kept so long */
 #define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
 
 /* ---- timers ---- */
@@ -192,6 +193,22 @@ static void hear_envelope(struct mh_cluster_node *c, const struct mh_message *he
 
 /* ---- neighbours ---- */
 
+/* Before the differences of times lose their meaning, after 24.8 days. */
+static void forget(struct mh_cluster_node *c)
+{
+    if (c->role != MH_CLUSTER_HEAD && mh_ticks_between(c->of.heard, c->time) > MEMORY) {
+        c->knows = c->followed.known = false;
+    }
+    if (!mh_tick_before(c->time, c->search_until)) {
+        c->search_until = c->time;
+    }
+    for (uint8_t i = 0; i < c->shunned_count; i++) {
+        if (!mh_tick_before(c->time, c->shunned[i].until)) {
+            c->shunned[i].until = c->time;
+        }
+    }
+}
+
 static void say_hello(struct mh_cluster_node *c)
 {
     const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
@@ -201,6 +218,7 @@ static void say_hello(struct mh_cluster_node *c)
                                                     .sequence = (int16_t)c->hellos}};
     mh_link_broadcast(&c->link, &message);
     mh_neighbours_age(&c->neighbours, c->now);
+    forget(c);
     c->hellos = c->hellos < UINT16_MAX ? (uint16_t)(c->hellos + 1) : HELLOS_AGAIN;
     if (c->hellos < HELLOS_AT_START) {
         const mh_tick part = MH_CLUSTER_START / HELLOS_AT_START;

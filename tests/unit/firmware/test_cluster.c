@@ -576,6 +576,38 @@ static void parts_that_do_not_fit_make_no_track(void)
     TEST_ASSERT_EQUAL(0, saw.leads);
 }
 
+static void parts_that_no_track_has_are_not_taken(void)
+{
+    pass(LATER + 160);
+    hand_over(LATER + 252, 5, 0, 1, 11);
+    TEST_ASSERT_EQUAL(1, saw.leads);
+    for (uint8_t parts = 10; parts >= 10; parts = (uint8_t)(parts + 35)) {
+        hand_over(LATER + 254, 6, 0, parts, (int16_t)(100 + parts));
+        hand_over(LATER + 254, 6, (uint8_t)(parts - 1), parts, (int16_t)(400 + parts));
+    }
+    TEST_ASSERT_EQUAL(1, saw.leads);
+}
+
+/* A month without a target: what was known of the last one does not stand against a new one. */
+static void old_tracks_are_forgotten(void)
+{
+    const mh_tick month = LATER + 30u * 24u * 3600000u;
+    config.hello_period = 1000000;
+    come_up(NODE);
+    pass(LATER - 1);
+    hear_ask(LATER + 4, LATER, HEAD, 9, true);
+    for (mh_tick time = LATER; time < month; time += 100000000u) {
+        state.set = 1u << MH_CLUSTER_HELLO; /* of all that happens hellos suffice */
+        cluster->timer(&state, AHEAD + time);
+        cluster->sent(&state, AHEAD + time + 3, MH_SENT_OK);
+        state.due[MH_CLUSTER_HELLO] = time + 100000000u;
+    }
+    TEST_ASSERT_FALSE(state.knows);
+    cluster->time_jumped(&state, AHEAD + month);
+    hear_ask(month + T + 4, month + T, HEAD, 1, true); /* outranked, a month ago */
+    TEST_ASSERT_EQUAL_INT32(1, state.of.generation);
+}
+
 /* The tracker does not know it: then anew. */
 static void a_track_that_is_corrupt_is_begun_anew(void)
 {
@@ -839,6 +871,8 @@ int main(void)
     RUN_TEST(a_cluster_that_has_joined_is_announced_once);
     RUN_TEST(a_track_comes_in_parts_in_any_order_and_once);
     RUN_TEST(parts_that_do_not_fit_make_no_track);
+    RUN_TEST(parts_that_no_track_has_are_not_taken);
+    RUN_TEST(old_tracks_are_forgotten);
     RUN_TEST(a_track_that_is_corrupt_is_begun_anew);
     RUN_TEST(old_and_outranked_tracks_are_not_taken);
     RUN_TEST(the_track_goes_to_the_elected_head);
