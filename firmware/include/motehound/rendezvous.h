@@ -1,7 +1,8 @@
 /* When a neighbour that sleeps can be reached: wake windows.
  *
  * A radio that may sleep opens by itself for a short time once in a period, all radios of the network at the same times: the whole multiples of the
- * period in the network's time. A frame that begins in a window is received. Who has something for a neighbour that may be asleep sends it
+ * period in the network's time, as mh_tick_aligned(0, period, time) counts them: since ticks wrap, one window every 49.7 days comes after another time
+ * than a period, unless that is a power of 2, and a radio that opens by itself has to be told. A frame that begins in a window is received. Who has something for a neighbour that may be asleep sends it
  * in the first half of a window, so that it begins within it though the channel is busy for a while.
  *
  * Windows at which a sampling instant falls are left to those who ask for samples, unless all are of that kind. All times are the network's. */

@@ -46,9 +46,11 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     if (range == NULL || given == NULL || interval < 1 || interval > 3600000u || !valid(given)) {
         return MH_ERR_ARGUMENT;
     }
-    const struct mh_range begun = {
-        .config = *given, .gate = {.sigmas = GATE_SIGMAS, .patience = GATE_PATIENCE}, .interval = interval};
-    *range = begun;
+    memset(range, 0, sizeof *range); /* no copy on the stack */
+    range->config = *given;
+    range->gate.sigmas = GATE_SIGMAS;
+    range->gate.patience = GATE_PATIENCE;
+    range->interval = interval;
     return MH_OK;
 }
 
