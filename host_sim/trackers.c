@@ -187,6 +187,8 @@ uint32_t tracker_draws(const struct tracker_choice *choice, const void *state)
     return choice->tracker == &mh_tracker_msl ? ((const struct mh_msl *)state)->draws : 0;
 }
 
+static mh_tick ticks(double seconds) { return (mh_tick)lround(seconds * MH_TICKS_PER_S); }
+
 struct mh_election_config election_config_of(const struct scenario *scenario)
 {
     struct mh_election_config config;
@@ -198,7 +200,7 @@ struct mh_election_config election_config_of(const struct scenario *scenario)
     config.least_answers = (uint8_t)scenario->protocol.least_answers;
     config.sensing_range_m = (mh_real)scenario->sensor.range_m;
     config.radio_range_m = (mh_real)radio_nominal_range_m(scenario);
-    config.interval = (mh_tick)lround(scenario->sensor.interval_s * MH_TICKS_PER_S);
+    config.interval = ticks(scenario->sensor.interval_s);
     return config;
 }
 
@@ -219,27 +221,19 @@ static void set_up_collection(struct protocol_choice *choice, const struct scena
     }
 }
 
-static mh_tick ticks(double seconds) { return (mh_tick)lround(seconds * MH_TICKS_PER_S); }
-
 static void set_up_cluster(struct protocol_choice *choice, const struct scenario *scenario)
 {
     const struct mh_place nowhere = {0, 0, 0};
     struct mh_cluster_config *config = &choice->config.cluster;
-    struct mh_election_config *election = &config->election;
     choice->protocol = &mh_protocol_cluster;
     choice->in_turns = true;
     mh_cluster_config_default(config, scenario->protocol.election, MH_BROADCAST - 1, &nowhere);
-    election->members = scenario->protocol.members > 0 ? (uint8_t)scenario->protocol.members : election->members;
-    election->horizon = (uint8_t)scenario->protocol.horizon;
-    election->least_answers = (uint8_t)scenario->protocol.least_answers;
-    election->sensing_range_m = (mh_real)scenario->sensor.range_m;
-    election->radio_range_m = (mh_real)radio_nominal_range_m(scenario);
-    election->interval = ticks(scenario->sensor.interval_s);
+    config->election = election_config_of(scenario);
     config->wake_period = ticks(scenario->radio.wake_period_s);
     config->wake_length = ticks(scenario->radio.wake_length_s);
-    config->watch_period = (mh_tick)fmax(election->interval, ticks(scenario->protocol.watch_s));
+    config->watch_period = (mh_tick)fmax(config->election.interval, ticks(scenario->protocol.watch_s));
     config->window = scenario->tracker.window_s > 0 ? ticks(scenario->tracker.window_s)
-                                                    : (mh_tick)fmin(config->window, election->interval / 2);
+                                                    : (mh_tick)fmin(config->window, config->election.interval / 2);
 }
 
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
