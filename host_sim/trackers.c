@@ -47,6 +47,7 @@ static struct known_target target_of(const struct scenario *scenario, const stru
     const bool walks = region && scenario->source.path == PATH_GAUSS_MARKOV;
     const struct mobility walk = mobility_of(scenario);
     const double smallest_sd_m = 0.01; /* of a sensor without noise */
+    const double least_mps2 = 1e-3;    /* of a walk that never turns */
     struct known_target target = {.range_sd_m = region ? fmax(scenario->sensor.range_noise_m, smallest_sd_m) : 0.3,
                                   .acceleration_sd_mps2 = 1,
                                   .height_m = region ? 0 : scenario->tracker.height_m,
@@ -57,7 +58,8 @@ static struct known_target target_of(const struct scenario *scenario, const stru
         /* a step changes each coordinate of the velocity by half the variance of the step's changes along and across the way */
         const double blur_sq = 1 - walk.memory * walk.memory;
         const double along = walk.speed_sd_mps, across = walk.heading_sd_rad * walk.speed_mps;
-        target.acceleration_sd_mps2 = sqrt(blur_sq * (along * along + across * across) / 2 / walk.interval_s);
+        const double acceleration = sqrt(blur_sq * (along * along + across * across) / 2 / walk.interval_s);
+        target.acceleration_sd_mps2 = fmax(acceleration, least_mps2);
     }
     if (scenario->tracker.range_sd_m > 0) {
         target.range_sd_m = scenario->tracker.range_sd_m;

@@ -58,8 +58,9 @@ static size_t sense(struct run *run)
     size_t detecting = 0;
     for (uint32_t i = 0; i < run->deployment.count; i++) {
         const struct recorded_node *node = &run->deployment.nodes[i];
-        const double dx = node->x_m - run->truth.x_m, dy = node->y_m - run->truth.y_m;
-        run->detects[i] = ranging_detects(&run->ranging, run->sample, i, sqrt(dx * dx + dy * dy), &run->range_m[i]);
+        const double dx = node->x_m - run->truth.x_m, dy = node->y_m - run->truth.y_m, dz = node->z_m;
+        run->detects[i] =
+            ranging_detects(&run->ranging, run->sample, i, sqrt(dx * dx + dy * dy + dz * dz), &run->range_m[i]);
         detecting += run->detects[i];
     }
     return detecting;
@@ -406,7 +407,7 @@ static int make_network(struct run *run)
         for (uint32_t i = 0; i < nodes; i++) {
             const struct recorded_node *node = &run->deployment.nodes[i];
             ids[i] = node->id;
-            places[i] = place_from_metres(node->x_m, node->y_m, 0);
+            places[i] = place_from_metres(node->x_m, node->y_m, node->z_m);
         }
         ids[nodes] = ids[nodes - 1] + 1;
         places[nodes] = place_from_metres(field.sink_x_m, field.sink_y_m, 0);

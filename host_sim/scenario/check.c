@@ -13,6 +13,9 @@
 
 #define FIELD_MAX_M 1e5
 
+/* Of what trackers are told of their target. */
+#define TRACKER_LEAST 1e-3
+
 static double leg_length(const struct waypoint *a, const struct waypoint *b)
 {
     return hypot(b->x_m - a->x_m, b->y_m - a->y_m);
@@ -72,6 +75,12 @@ static int check_field(const struct scenario *scenario, const char *name, char *
         const struct mobility walk = mobility_of(scenario);
         const double room_m = fmin(field.width_m, field.height_m) - 2 * walk.margin_m;
         const double step_m = MOBILITY_FASTEST * walk.speed_mps * walk.interval_s;
+        if (room_m <= 0) {
+            return fail(error, error_size,
+                        "%s: source.path: expected a field wider than 2 sensor.range_m = %g m for gauss_markov, found "
+                        "%g m",
+                        name, 2 * walk.margin_m, fmin(field.width_m, field.height_m));
+        }
         if (room_m <= step_m) {
             return fail(error, error_size,
                         "%s: target.speed_mph: expected steps shorter than the %g m that lie sensor.range_m inside "
@@ -109,6 +118,27 @@ static int check_faults(const struct scenario *scenario, const char *name, char 
     return 0;
 }
 
+/* What motes that follow a target in clusters cannot do. */
+static int check_rhythm(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    if (scenario->sensor.interval_s < 0.1) {
+        return fail(error, error_size,
+                    "%s: sensor.interval_s: expected at least 0.1 for network.protocol cluster, found %g", name,
+                    scenario->sensor.interval_s);
+    }
+    if (scenario->tracker.window_s > 0 && scenario->tracker.window_s < 0.02) {
+        return fail(error, error_size,
+                    "%s: tracker.window_s: expected 0 or at least 0.02 for network.protocol cluster, found %g", name,
+                    scenario->tracker.window_s);
+    }
+    if (scenario->radio.wake_period_s > 0 && scenario->radio.wake_length_s < 0.004) {
+        return fail(error, error_size,
+                    "%s: radio.wake_length_s: expected at least 0.004 for network.protocol cluster, found %g", name,
+                    scenario->radio.wake_length_s);
+    }
+    return 0;
+}
+
 /* Clusters follow a target that is ranged, and the ideal network has nothing but them. */
 static int check_clusters(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
@@ -123,7 +153,7 @@ static int check_clusters(const struct scenario *scenario, const char *name, cha
                     name);
     }
     if (!scenario->network.ideal) {
-        return 0;
+        return clusters ? check_rhythm(scenario, name, error, error_size) : 0;
     }
     struct faults faults;
     faults_make(&faults, scenario, 0);
@@ -135,6 +165,14 @@ static int check_clusters(const struct scenario *scenario, const char *name, cha
     if (scenario->sensor.loss > 0 || scenario->sensor.outage_s > 0) {
         return fail(error, error_size,
                     "%s: network.ideal: expected false where sensor.loss or sensor.outage_s is not 0", name);
+    }
+    if (scenario->sensor.adc_bits > 0) {
+        return fail(error, error_size, "%s: network.ideal: expected false where sensor.adc_bits is not 0, found %lld",
+                    name, (long long)scenario->sensor.adc_bits);
+    }
+    if (scenario->clock.sync != SYNC_NONE ||
+        fmax(scenario->clock.offset_s, fmax(scenario->clock.drift_ppm, scenario->clock.wander_ppm)) > 0) {
+        return fail(error, error_size, "%s: network.ideal: expected false where clocks are not ideal (clock.*)", name);
     }
     if (scenario->energy.battery_j > 0) {
         return fail(error, error_size, "%s: network.ideal: expected false where energy.battery_j is not 0, found %g J",
@@ -223,6 +261,18 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
 
 int scenario_check_tracking(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
+    const struct {
+        const char *key;
+        double value;
+    } told[] = {{"tracker.range_sd_m", scenario->tracker.range_sd_m},
+                {"tracker.acceleration_sd_mps2", scenario->tracker.acceleration_sd_mps2},
+                {"tracker.speed_mps", scenario->tracker.speed_mps}};
+    for (size_t i = 0; i < sizeof told / sizeof told[0]; i++) {
+        if (told[i].value > 0 && told[i].value < TRACKER_LEAST) {
+            return fail(error, error_size, "%s: %s: expected 0 or at least %g, found %g", name, told[i].key,
+                        TRACKER_LEAST, told[i].value);
+        }
+    }
     if (scenario->tracker.window_s >= scenario->sensor.interval_s) {
         return fail(error, error_size, "%s: tracker.window_s: expected less than sensor.interval_s = %g, found %g",
                     name, scenario->sensor.interval_s, scenario->tracker.window_s);

@@ -154,6 +154,9 @@ static void keys_that_contradict_each_other_are_refused(void)
         {"network.ideal", "true", "network.protocol", "collection"},
         {"network.protocol", "cluster", "sensor.quantity", "concentration"},
         {"network.density", "12", "network.layout", "file"},
+        {"tracker.range_sd_m", "1e-4", "tracker.name", "range"},
+        {"tracker.acceleration_sd_mps2", "1e-4", "tracker.name", "range"},
+        {"tracker.speed_mps", "1e-4", "tracker.name", "pftl"},
         {"network.density", "1e-4", "network.nodes", "100000"},
         {"sweep.key", "network.node", "sweep.values", "1"},
         {"sweep.key", "network.nodes", "sweep.values", ""},
@@ -187,6 +190,8 @@ static void a_ranged_target_in_clusters_has_limits(void)
         {"network.protocol", "direct"}, {"sensor.quantity", "concentration"},
         {"source.path", "none"},        {"sensor.loss", "0.1"},
         {"energy.battery_j", "1"},      {"faults.stuck_share", "0.1"},
+        {"clock.drift_ppm", "1"},       {"clock.sync", "flooding"},
+        {"sensor.adc_bits", "8"},       {"sensor.range_m", "1"},     /* steps of 17 m in a field of 14 */
         {"faults.mute_for_s", "5"},     {"network.density", "1000"}, /* a field of 50 m x 1.77 */
         {"target.speed_mph", "1000"},   {"source.duration_s", "1.9"},
     };
