@@ -26,7 +26,4 @@ struct mh_range_fix {
 enum mh_status mh_range_fix(const struct mh_measurement *ranges, size_t count, const struct mh_place *origin,
                             mh_real height_m, mh_real sd_m, struct mh_vec2 near, struct mh_range_fix *fix);
 
-/* The mean place of the anchors, relative to the origin; count >= 1. */
-struct mh_vec2 mh_range_centre(const struct mh_measurement *ranges, size_t count, const struct mh_place *origin);
-
 #endif

@@ -67,20 +67,6 @@ static mh_real descend(const struct problem *problem, int passes, mh_real dampin
     return squares;
 }
 
-struct mh_vec2 mh_range_centre(const struct mh_measurement *ranges, size_t count, const struct mh_place *origin)
-{
-    struct mh_vec2 centre = {0, 0};
-    for (size_t i = 0; i < count; i++) {
-        const struct mh_vec2 anchor = mh_place_relative(&ranges[i].place, origin);
-        centre.x += anchor.x;
-        centre.y += anchor.y;
-    }
-    const mh_real share = 1.0f / (mh_real)count;
-    centre.x *= share;
-    centre.y *= share;
-    return centre;
-}
-
 enum mh_status mh_range_fix(const struct mh_measurement *ranges, size_t count, const struct mh_place *origin,
                             mh_real height_m, mh_real sd_m, struct mh_vec2 near, struct mh_range_fix *fix)
 {
@@ -94,7 +80,7 @@ enum mh_status mh_range_fix(const struct mh_measurement *ranges, size_t count, c
     struct mh_range_fix best = {.position = {near.x * 1000.0f, near.y * 1000.0f}};
     mh_real squares = descend(&problem, 5, 0.05f, &best);
     if (!(squares <= limit)) {
-        const struct mh_vec2 centre = mh_range_centre(ranges, count, origin);
+        const struct mh_vec2 centre = mh_centroid(ranges, count, origin);
         struct mh_range_fix second = {.position = {centre.x * 1000.0f, centre.y * 1000.0f}};
         const mh_real others = descend(&problem, 10, 0.3f, &second);
         if (!(squares <= others)) {

@@ -139,7 +139,7 @@ static bool start_among(struct mh_range *range, uint8_t states, const struct mh_
     const struct mh_range_config *config = &range->config;
     const struct mh_place origin = m[0].place;
     const mh_real spread = mh_squared(config->sensing_range_m) * 0.25f; /* of a disc, in each axis */
-    struct mh_fix place = {.position = mh_range_centre(m, count, &origin), .covariance = {spread, 0, spread}};
+    struct mh_fix place = {.position = mh_centroid(m, count, &origin), .covariance = {spread, 0, spread}};
     struct mh_range_fix fix;
     const mh_real variance = mh_squared(config->range_sd_m) + mh_squared(config->bias_sd_m);
     if (mh_range_fix(m, count, &origin, config->height_m, mh_sqrt(variance), place.position, &fix) == MH_OK) {
