@@ -112,8 +112,7 @@ static void heads_die(void)
 {
     struct simulation_counters counters;
     for (uint64_t seed = 1; seed <= 2; seed++) {
-        const struct followed followed = follow(
-            "zhou_real", "faults.dead_share=0.03 faults.dead_from_s=20 faults.every_s=60", 600, 0, seed, &counters);
+        const struct followed followed = follow("zhou_heads", "", 600, 0, seed, &counters);
         expect_at_least("frames lost to the dead", (double)counters.frames_lost_by[LOSS_DEAD], 100);
         expect_at_most("longest gap, s", followed.gap_s, 20);
     }
