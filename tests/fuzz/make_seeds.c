@@ -126,7 +126,8 @@ static int save_saved(const char *folder, const char *name, uint8_t choice, cons
         struct mh_estimate estimate;
         memset(set, 0, sizeof set);
         for (int k = 0; k < 5; k++) {
-            const struct mh_vec2 off = {(mh_real)(k % 3 * 20 - 8 * i), (mh_real)(k / 3 * 30 - 10)};
+            const int row = k / 3;
+            const struct mh_vec2 off = {(mh_real)(k % 3 * 20 - 8 * i), (mh_real)(row * 30 - 10)};
             set[k].node = (mh_node_id)k;
             set[k].place.x_mm = k % 3 * 20000;
             set[k].place.y_mm = k / 3 * 30000;
