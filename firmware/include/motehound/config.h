@@ -146,14 +146,10 @@
 #endif
 
 /* What the tracker `range` can learn of its ranges: their scale and the biases of as many anchors less one. The first anchors it hears have
- * it; further ones are taken for noisier. Each is a state of its Kalman filter, so that nine cost 340 bytes of state and as many of stack, and time
- * only where they are learned. */
+ * it; further ones are taken for noisier. Each is a state of its Kalman filter: nine, for eight anchors, cost 340 bytes of state and as many of stack.
+ * 0: nothing is learned. */
 #ifndef MH_RANGE_BIASES_MAX
-#ifdef __AVR__
 #define MH_RANGE_BIASES_MAX 0
-#else
-#define MH_RANGE_BIASES_MAX 9
-#endif
 #endif
 
 /* Anchors whose last range the tracker `range` keeps while it looks for a target, to start from at least three that were read one after the

@@ -89,18 +89,17 @@ enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real 
     return MH_OK;
 }
 
-/* Copy what is in use; four states, which are the usual, without a call. */
+/* Copy what is in use. */
 static void copy(struct mh_kalman *to, const struct mh_kalman *filter)
 {
-    if (filter->n <= 4) {
-        memcpy(to->x, filter->x, 4 * sizeof to->x[0]);
-        memcpy(to->ud, filter->ud, MH_PACKED_SIZE(4) * sizeof to->ud[0]);
-    } else {
-        memcpy(to->x, filter->x, filter->n * sizeof to->x[0]);
-        memcpy(to->ud, filter->ud, (size_t)MH_PACKED_SIZE(filter->n) * sizeof to->ud[0]);
+    if (MH_KALMAN_STATES_MAX <= MH_KALMAN_MOVING_MAX) {
+        *to = *filter;
+        return;
     }
     to->n = filter->n;
     to->moving = filter->moving;
+    memcpy(to->x, filter->x, filter->n * sizeof to->x[0]);
+    memcpy(to->ud, filter->ud, (size_t)MH_PACKED_SIZE(filter->n) * sizeof to->ud[0]);
 }
 
 /* The rows of U that tie the states that do not move to the others: F times themselves. */

@@ -116,7 +116,7 @@ static bool begin(struct mh_range *range, uint8_t states, const struct mh_place 
     if (states <= MOTION && range->config.scale_sd > 0 && status == MH_OK) {
         status = mh_kalman_append(&filter, 0, mh_squared(range->config.scale_sd));
     }
-    for (uint8_t i = MOTION; i < states && status == MH_OK; i++) {
+    for (uint8_t i = MOTION; i < states && i < MH_KALMAN_STATES_MAX && status == MH_OK; i++) {
         status = mh_kalman_append(&filter, range->filter.x[i], mh_kalman_variance(&range->filter, i));
     }
     if (status != MH_OK) {
