@@ -44,7 +44,7 @@ const struct scenario_key scenario_keys[] = {
     {"protocol.members", KEY_COUNT, AT(protocol.members), "0", 0, MH_CLUSTER_MAX, NULL, "cluster: nodes of a cluster beside its head; 0 for the rule's own number, 15 for sacx and 7 for sac and rho"},
     {"protocol.horizon", KEY_COUNT, AT(protocol.horizon), "4", 1, MH_ELECTION_HORIZON_MAX, NULL, "sac: predicted samples that the election looks at"},
     {"protocol.least_answers", KEY_COUNT, AT(protocol.least_answers), "4", 0, MH_CLUSTER_MAX + 1, NULL, "sac, sacx, rho: an election when fewer nodes than this measure the target or will"},
-    {"protocol.watch_s", KEY_NUMBER, AT(protocol.watch_s), "2", 0.1, 3600, NULL, "cluster: a node that hears of no track looks for a target this often, at a time of its own"},
+    {"protocol.watch_s", KEY_NUMBER, AT(protocol.watch_s), "10", 0.1, 3600, NULL, "cluster: a node that hears of no track looks for a target this often, at a time of its own"},
     {"traffic.sources", KEY_COUNT, AT(traffic.sources), "0", 0, 1e6, NULL, "path none: nodes that report once in sensor.interval_s, each at its own time"},
     {"sensor.quantity", KEY_CHOICE, AT(sensor.quantity), "concentration", 0, 0, "concentration|range", "what is measured: the source's diffusing substance, or how far the target is"},
     {"sensor.interval_s", KEY_NUMBER, AT(sensor.interval_s), "1", 0.01, 3600, NULL, "between samples; in a replay the recording's own unless set"},
