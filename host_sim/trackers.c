@@ -234,8 +234,10 @@ static void set_up_cluster(struct protocol_choice *choice, const struct scenario
     config->wake_period = ticks(scenario->radio.wake_period_s);
     config->wake_length = ticks(scenario->radio.wake_length_s);
     config->watch_period = (mh_tick)fmax(config->election.interval, ticks(scenario->protocol.watch_s));
+    const mh_tick half = config->election.interval / 2;
     config->window = scenario->tracker.window_s > 0 ? ticks(scenario->tracker.window_s)
-                                                    : (mh_tick)fmin(config->window, config->election.interval / 2);
+                     : config->window < half        ? config->window
+                                                    : half;
 }
 
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
