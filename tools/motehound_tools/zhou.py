@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -64,12 +65,17 @@ class Figures:
         return float(np.mean(values)) if len(values) else float("nan")
 
 
+def significant(value: float, digits: int) -> str:
+    decimals = digits - 1 - math.floor(math.log10(abs(value))) if value else 0
+    return f"{value:,.{max(decimals, 0)}f}"
+
+
 def spread(values: Array, digits: int = 4) -> str:
     """Mean and standard deviation over the seeds."""
     if not len(values):
         return "–"
-    sd = f" ± {np.std(values, ddof=1):.2g}" if len(values) > 1 else ""
-    return f"{np.mean(values):.{digits}g}{sd}"
+    sd = f" ± {significant(float(np.std(values, ddof=1)), 2)}" if len(values) > 1 else ""
+    return significant(float(np.mean(values)), digits) + sd
 
 
 def verdict(held: bool) -> str:
@@ -92,11 +98,11 @@ class Wanted:
         values = figures.of(*self.place, self.metric, **self.at) * self.scale
         mean = float(np.mean(values)) if len(values) else float("nan")
         if self.within is None:
-            return [self.what, spread(values), f"≤ {self.value:g}", verdict(mean <= self.value)]
+            return [self.what, spread(values), f"≤ {self.value:,g}", verdict(mean <= self.value)]
         held = abs(mean - self.value) <= self.within * self.value
         exact = self.within < 0.01
         said = f"± {self.within * self.value:.1g}" if exact else f"± {100.0 * self.within:.2g} %"
-        return [self.what, spread(values, 5 if exact else 4), f"{self.value:g} {said}", verdict(held)]
+        return [self.what, spread(values, 5 if exact else 4), f"{self.value:,g} {said}", verdict(held)]
 
 
 def axis(key: str, value: float) -> dict[str, float]:
@@ -132,7 +138,9 @@ def reproduced() -> list[Wanted]:
             ("at the sink", SINK, sink, 0.04),
             ("reports a sample", REPORTS, reports, 0.05),
         ):
-            rows.append(Wanted(f"PFTL, {label}: {what}", (name, ERRORS, "PFTL"), metric, value, within, axis(key, point)))
+            rows.append(
+                Wanted(f"PFTL, {label}: {what}", (name, ERRORS, "PFTL"), metric, value, within, axis(key, point))
+            )
     for tolerance, sink, reports in ((1, 0.0523, 0.978), (10, 0.1129, 0.216), (20, 0.1808, 0.126)):
         place, at = ("zhou_fig8", EPSILON, "PFTL"), axis(SPEED, 10) | axis(TOLERANCE, tolerance)
         rows.append(Wanted(f"PFTL, tolerance {tolerance} m: at the sink", place, SINK, sink, 0.04, at))

@@ -49,8 +49,8 @@ def test_page_has_no_hole(tables: dict[str, Table]) -> None:
     lines = [line for line in page.splitlines() if line.startswith("|")]
     assert len(lines) > 100 and "nan" not in page and "–" not in "".join(lines)
     # everything is 0.05: at most 0.05 holds, 0.0540 does not
-    assert any("SACX, 10 mph: localised | 0.05 ± 0 | ≤ 0.056 | pass" in line for line in lines)
-    assert any("PFTL, 4 mph: localised | 0.025 ± 0 | 0.054 ± 4 % | **miss**" in line for line in lines)
+    assert any("SACX, 10 mph: localised | 0.05000 ± 0 | ≤ 0.056 | pass" in line for line in lines)
+    assert any("PFTL, 4 mph: localised | 0.02500 ± 0 | 0.054 ± 4 % | **miss**" in line for line in lines)
     assert any("at 4 mph PFTL is nearly 50 %" in line and "at the sink 50 and 50 %" in line for line in lines)
     assert any("without 10 s" in line and "| 2 of 2 | all | pass" in line for line in lines)
 
@@ -62,4 +62,4 @@ def test_verdicts(tables: dict[str, Table]) -> None:
     assert zhou.Wanted("", place, "clusters", 0.052, 0.05, at).row(figures)[-1] == "pass"
     assert zhou.Wanted("", place, "clusters", 0.056, 0.05, at).row(figures)[-1] == "**miss**"
     assert zhou.Wanted("", place, "clusters", 0.049, None, at).row(figures)[-1] == "**miss**"
-    assert zhou.Wanted("", place, "clusters", 0.05, None, at, 2.0).row(figures)[1:] == ["0.1 ± 0", "≤ 0.05", "**miss**"]
+    assert zhou.Wanted("", place, "clusters", 0.05, None, at, 2.0).row(figures)[1:] == ["0.1000 ± 0", "≤ 0.05", "**miss**"]
