@@ -45,4 +45,7 @@ void mh_geographic_address(struct mh_message *message, mh_node_id origin, int16_
 enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, const struct mh_message *message,
                                struct mh_message *leaving, mh_node_id *next);
 
+/* Why a message is lost that has neither a next hop nor arrived. */
+enum mh_loss mh_geographic_loss(enum mh_hop hop);
+
 #endif

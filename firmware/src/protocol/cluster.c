@@ -147,7 +147,8 @@ static void send_on(struct mh_cluster_node *c, const struct mh_message *message)
 {
     struct mh_message leaving;
     mh_node_id next;
-    switch (mh_geographic_next(&c->neighbours, c->config->faces, message, &leaving, &next)) {
+    const enum mh_hop hop = mh_geographic_next(&c->neighbours, c->config->faces, message, &leaving, &next);
+    switch (hop) {
     case MH_HOP_NEXT:
         mh_link_send(&c->link, next, &leaving);
         break;
@@ -155,14 +156,8 @@ static void send_on(struct mh_cluster_node *c, const struct mh_message *message)
         take_in(c, message);
         mh_link_finish(&c->link);
         break;
-    case MH_HOP_UNREACHABLE:
-        mh_link_drop(&c->link, MH_LOSS_LOOP);
-        break;
-    case MH_HOP_TOO_MANY:
-        mh_link_drop(&c->link, MH_LOSS_HOPS);
-        break;
     default:
-        mh_link_drop(&c->link, MH_LOSS_NO_ROUTE);
+        mh_link_drop(&c->link, mh_geographic_loss(hop));
         break;
     }
 }

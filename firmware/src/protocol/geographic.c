@@ -190,3 +190,15 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
     }
     return hop;
 }
+
+enum mh_loss mh_geographic_loss(enum mh_hop hop)
+{
+    switch (hop) {
+    case MH_HOP_UNREACHABLE:
+        return MH_LOSS_LOOP;
+    case MH_HOP_TOO_MANY:
+        return MH_LOSS_HOPS;
+    default:
+        return MH_LOSS_NO_ROUTE;
+    }
+}

@@ -99,7 +99,8 @@ static void pump(struct mh_geographic_collection *g, mh_tick now)
     while ((due = mh_link_due(&g->link, now)) != NULL) {
         struct mh_message leaving;
         mh_node_id next;
-        switch (mh_geographic_next(&g->neighbours, g->config->faces, due, &leaving, &next)) {
+        const enum mh_hop hop = mh_geographic_next(&g->neighbours, g->config->faces, due, &leaving, &next);
+        switch (hop) {
         case MH_HOP_NEXT:
             mh_link_send(&g->link, next, &leaving);
             break;
@@ -107,14 +108,8 @@ static void pump(struct mh_geographic_collection *g, mh_tick now)
             hand_over(g, now, due);
             mh_link_finish(&g->link);
             break;
-        case MH_HOP_UNREACHABLE:
-            mh_link_drop(&g->link, MH_LOSS_LOOP);
-            break;
-        case MH_HOP_TOO_MANY:
-            mh_link_drop(&g->link, MH_LOSS_HOPS);
-            break;
         default:
-            mh_link_drop(&g->link, MH_LOSS_NO_ROUTE);
+            mh_link_drop(&g->link, mh_geographic_loss(hop));
             break;
         }
     }
