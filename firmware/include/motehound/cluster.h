@@ -28,7 +28,9 @@
  *     its own. Who finds the target alerts its neighbours in the next window (alert_t), the nearer the earlier, and leads; the others hear that,
  *     and do not.
  *
- * Hellos go three times in the first MH_CLUSTER_START ticks, in which all listen, and then once a hello period, in wake windows.
+ * Hellos go twice in the first MH_CLUSTER_START ticks, in which all listen, once more in a wake window soon after, and then once a hello period, in
+ * wake windows. Who hears one of the first three of another, and has been here longer, says hello in one of the next 16 windows, at most every 10 s:
+ * so nodes that restart, however many at once, know their neighbours again within about ten seconds.
  *
  * All motes but the sink have a head's configuration, with the same interval and window as here, epoch 0 and some tolerance: who is asked samples
  * when it hears of it.
@@ -99,7 +101,7 @@ struct mh_cluster_of {
     int32_t vx_mmps, vy_mmps; /* ... and how it moved */
 };
 
-/* What this node did beside what protocol.h counts of clusters; all wrap. */
+/* What this node did beside what protocol.h counts of clusters; all saturate. */
 struct mh_cluster_events {
     uint16_t begun;      /* tracks begun here */
     uint16_t lost;       /* tracks given up here */
@@ -122,7 +124,8 @@ struct mh_cluster_node {
     uint16_t set;                   /* bit k: timer k is set ... */
     mh_tick due[MH_CLUSTER_TIMERS]; /* ... for this network time */
     mh_tick began;                  /* when the network's time became known */
-    uint16_t hellos;                /* sent */
+    uint16_t hellos;                /* sent ... */
+    mh_tick greeted;                /* ... the last at this network time */
     uint16_t sequence;              /* of messages in envelopes */
     uint8_t role;                   /* enum mh_cluster_role */
     bool running;                   /* the network's time is known */

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #define HELLOS_AT_START 3
+#define WELCOME_WINDOWS 16           /* over so many windows the neighbours of a newcomer spread their hellos */
+#define WELCOME_PAUSE 10000          /* ticks: nobody says hello to newcomers more often */
 #define MEMORY ((int32_t)1 << 30)    /* ticks: what is known of a track is kept so long */
 #define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
 
@@ -98,6 +100,8 @@ static void arm(struct mh_cluster_node *c)
 }
 
 /* ---- what all know ---- */
+
+void mh_cluster_note(uint16_t *events) { *events = (uint16_t)(*events + (*events < UINT16_MAX)); }
 
 bool mh_cluster_outranks(const struct mh_cluster_of *a, const struct mh_cluster_of *b)
 {
@@ -204,8 +208,16 @@ static void forget(struct mh_cluster_node *c)
     }
 }
 
+static void hello_in_window(struct mh_cluster_node *c, mh_tick from, uint8_t windows)
+{
+    const mh_tick window = mh_rendezvous_after(&c->rendezvous, from, windows);
+    mh_cluster_set(c, MH_CLUSTER_HELLO, window + mh_spread(c->node->id, c->hellos, c->config->wake_length / 2 + 1));
+}
+
+/* The last of the first hellos goes in a window: whoever has been here longer sleeps. */
 static void say_hello(struct mh_cluster_node *c)
 {
+    const mh_tick period = c->config->hello_period, part = MH_CLUSTER_START / HELLOS_AT_START;
     const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
                                        .as.hello = {.sender = (int32_t)c->node->id,
                                                     .x_mm = c->node->place.x_mm,
@@ -214,15 +226,29 @@ static void say_hello(struct mh_cluster_node *c)
     mh_link_broadcast(&c->link, &message);
     mh_neighbours_age(&c->neighbours, c->now);
     forget(c);
+    c->greeted = c->time;
     c->hellos = c->hellos < UINT16_MAX ? (uint16_t)(c->hellos + 1) : HELLOS_AGAIN;
-    if (c->hellos < HELLOS_AT_START) {
-        const mh_tick part = MH_CLUSTER_START / HELLOS_AT_START;
+    if (c->hellos < HELLOS_AT_START - 1) {
         mh_cluster_set(c, MH_CLUSTER_HELLO, c->began + part * c->hellos + mh_spread(c->node->id, c->hellos, part));
+    } else if (c->hellos < HELLOS_AT_START) {
+        hello_in_window(c, c->began + part * c->hellos + mh_spread(c->node->id, c->hellos, 2 * part), 0);
     } else {
-        const mh_tick period = c->config->hello_period;
-        const mh_tick window =
-            mh_rendezvous_after(&c->rendezvous, c->time + period - mh_spread(c->node->id, c->hellos, period / 4), 0);
-        mh_cluster_set(c, MH_CLUSTER_HELLO, window + mh_spread(c->node->id, c->hellos, c->config->wake_length / 2 + 1));
+        hello_in_window(c, c->time + period - mh_spread(c->node->id, c->hellos, period / 4), 0);
+    }
+}
+
+/* Who has restarted knows nobody: says hello to it soon. Not while the network starts, when all say hello by themselves. */
+static void welcome(struct mh_cluster_node *c, const mh_hello_t *hello)
+{
+    if ((uint16_t)hello->sequence >= HELLOS_AT_START || c->hellos < HELLOS_AT_START ||
+        c->time - c->began < 2 * MH_CLUSTER_START) {
+        return;
+    }
+    const mh_tick planned = c->due[MH_CLUSTER_HELLO], pause_ends = c->greeted + WELCOME_PAUSE;
+    const mh_tick from = mh_tick_before(c->time, pause_ends) ? pause_ends : c->time;
+    hello_in_window(c, from, (uint8_t)mh_spread(c->node->id, c->hellos, WELCOME_WINDOWS));
+    if (mh_tick_before(planned, c->due[MH_CLUSTER_HELLO])) {
+        mh_cluster_set(c, MH_CLUSTER_HELLO, planned);
     }
 }
 
@@ -332,6 +358,8 @@ static void message(void *state, mh_tick now, const struct mh_message *heard)
     }
     if (heard->envelope != MH_ENVELOPE_NONE) {
         hear_envelope(c, heard);
+    } else if (heard->kind == MH_MESSAGE_HELLO) {
+        welcome(c, &heard->as.hello);
     } else if (heard->kind == MH_MESSAGE_ANSWER) {
         mh_cluster_hear_answer(c, &heard->as.answer);
     } else if (heard->kind == MH_MESSAGE_JOIN) {

@@ -134,7 +134,7 @@ bool mh_cluster_contest(struct mh_cluster_node *c, const struct mh_cluster_of *o
         return true;
     }
     if (mh_cluster_outranks(other, &c->of) || c->misses > 0) {
-        c->events.yielded++;
+        mh_cluster_note(&c->events.yielded);
         mh_cluster_follow(c);
         return false;
     }
@@ -357,7 +357,7 @@ void mh_cluster_part_taken(struct mh_cluster_node *c)
     if (c->parts > 0) {
         return;
     }
-    c->events.handed++;
+    mh_cluster_note(&c->events.handed);
     c->of.head = c->next.head.id;
     c->of.generation = c->next_generation;
     mh_cluster_follow(c);
@@ -380,7 +380,7 @@ static bool find_another(struct mh_cluster_node *c)
 
 void mh_cluster_part_refused(struct mh_cluster_node *c)
 {
-    c->events.refused++;
+    mh_cluster_note(&c->events.refused);
     shun(c, c->next.head.id);
     if (!find_another(c) || !offer(c)) {
         stay(c);
@@ -524,7 +524,7 @@ static void give_up(struct mh_cluster_node *c)
                              .x_mm = c->of.x_mm,
                              .y_mm = c->of.y_mm,
                              .lost = 1};
-    c->events.lost++;
+    mh_cluster_note(&c->events.lost);
     c->alert = lost;
     c->search_until = c->time + MH_CLUSTER_SEARCH * interval_of(c);
     mh_cluster_follow(c);

@@ -335,7 +335,7 @@ void mh_cluster_alert(struct mh_cluster_node *c)
         if (goes_on) {
             c->counters.recoveries++;
         } else {
-            c->events.begun++;
+            mh_cluster_note(&c->events.begun);
         }
     }
 }
@@ -402,7 +402,7 @@ void mh_cluster_take_over(struct mh_cluster_node *c)
     if (!mh_cluster_lead(c, &of, NULL, 0)) {
         return;
     }
-    c->events.taken_over++;
+    mh_cluster_note(&c->events.taken_over);
     for (uint8_t i = 0; i < silent.count; i++) {
         const struct mh_neighbour *n = mh_neighbours_find(&c->neighbours, silent.members[i].id);
         if (n) {

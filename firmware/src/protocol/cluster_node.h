@@ -10,6 +10,9 @@ void mh_cluster_set(struct mh_cluster_node *c, enum mh_cluster_timer timer, mh_t
 void mh_cluster_clear(struct mh_cluster_node *c, enum mh_cluster_timer timer);
 bool mh_cluster_is_set(const struct mh_cluster_node *c, enum mh_cluster_timer timer);
 
+/* Count an event, as far as the counter goes. */
+void mh_cluster_note(uint16_t *events);
+
 /* Listen until then at least; listen for nothing in particular any more. */
 void mh_cluster_listen(struct mh_cluster_node *c, mh_tick until);
 void mh_cluster_quiet(struct mh_cluster_node *c);

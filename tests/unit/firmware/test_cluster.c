@@ -284,14 +284,15 @@ static void bad_configurations_are_refused(void)
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, cluster->init(&state, &config, &node));
 }
 
-/* Three hellos while all listen, then one a period in a wake window, and the radio sleeps. */
+/* Two hellos while all listen, one in a wake window soon after, then one a period in a wake window, and the radio sleeps. */
 static void a_node_sleeps_after_its_first_hellos(void)
 {
     pass(MH_CLUSTER_START + 5);
     TEST_ASSERT_TRUE(saw.listens);
     pass(MH_CLUSTER_START + 20);
-    TEST_ASSERT_EQUAL(3, saw.of_kind[MH_MESSAGE_HELLO]);
     TEST_ASSERT_FALSE(saw.listens);
+    pass(LATER);
+    TEST_ASSERT_EQUAL(3, saw.of_kind[MH_MESSAGE_HELLO]);
     while (saw.of_kind[MH_MESSAGE_HELLO] == 3) {
         const mh_tick due = saw.timer;
         cluster->timer(&state, AHEAD + due);
@@ -300,6 +301,50 @@ static void a_node_sleeps_after_its_first_hellos(void)
             TEST_ASSERT_TRUE(due > config.hello_period / 2 && due < config.hello_period + 2 * MH_CLUSTER_START);
         }
     }
+}
+
+static void hear_hello_at(mh_tick time, int16_t sequence)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
+                                       .as.hello = {.sender = NEXT, .x_mm = 60000, .sequence = sequence}};
+    hear(time, &message);
+}
+
+/* Within 16 windows and those left to asking, in a window, once; then the next a period later. */
+static void who_hears_a_node_begin_anew_says_hello(void)
+{
+    const mh_tick heard = 60000, pause = 10000, at_most = 16 * 250 * 8 / 7 + 500;
+    pass(heard);
+    const unsigned before = saw.of_kind[MH_MESSAGE_HELLO];
+    hear_hello_at(heard, 2);
+    for (mh_tick time = heard; time <= heard + at_most && saw.of_kind[MH_MESSAGE_HELLO] == before; time = saw.timer) {
+        pass(saw.timer);
+    }
+    TEST_ASSERT_EQUAL(before + 1, saw.of_kind[MH_MESSAGE_HELLO]);
+    TEST_ASSERT_TRUE(mh_rendezvous_open(&state.rendezvous, state.greeted));
+    const mh_tick first = state.greeted;
+    TEST_ASSERT_TRUE(first > heard && first <= heard + at_most);
+    for (int i = 0; i < 20; i++) { /* many restart: a hello in a pause, no more */
+        hear_hello_at(first + 10 + (mh_tick)i, (int16_t)(i % 3));
+    }
+    pass(first + pause - 1);
+    TEST_ASSERT_EQUAL(before + 1, saw.of_kind[MH_MESSAGE_HELLO]);
+    pass(first + pause + at_most);
+    TEST_ASSERT_EQUAL(before + 2, saw.of_kind[MH_MESSAGE_HELLO]);
+    pass(first + pause + at_most + config.hello_period / 2);
+    TEST_ASSERT_EQUAL(before + 2, saw.of_kind[MH_MESSAGE_HELLO]);
+}
+
+static void a_hello_of_long_known_nodes_or_at_the_start_is_not_answered(void)
+{
+    pass(LATER);
+    hear_hello_at(LATER, 2);
+    pass(60000);
+    hear_hello_at(60000, 3);
+    hear_hello_at(60001, 256);
+    hear_hello_at(60002, -1); /* 65,535 */
+    pass(100000);
+    TEST_ASSERT_EQUAL(3, saw.of_kind[MH_MESSAGE_HELLO]);
 }
 
 /* Its own instant once a watch period, if it has heard of no track. */
@@ -714,9 +759,11 @@ static void a_target_that_nobody_measures_is_lost(void)
     TEST_ASSERT_EQUAL(1, saw.message.as.ask.everyone);
     close_instant(LATER + 2 * T, 0, 0, 0);
     TEST_ASSERT_EQUAL(0, saw.follows);
+    state.events.lost = UINT16_MAX; /* a full counter stays */
     pass(LATER + 3 * T + 1);
     close_instant(LATER + 3 * T, 0, 0, 0);
     TEST_ASSERT_EQUAL(1, saw.follows);
+    TEST_ASSERT_EQUAL(UINT16_MAX, state.events.lost);
     pass(LATER + 3 * T + 260);
     TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_ALERT]);
     TEST_ASSERT_EQUAL(1, saw.message.as.alert.lost);
@@ -854,6 +901,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(bad_configurations_are_refused);
     RUN_TEST(a_node_sleeps_after_its_first_hellos);
+    RUN_TEST(who_hears_a_node_begin_anew_says_hello);
+    RUN_TEST(a_hello_of_long_known_nodes_or_at_the_start_is_not_answered);
     RUN_TEST(who_is_not_asked_watches);
     RUN_TEST(without_the_networks_time_nothing_is_done);
     RUN_TEST(who_hears_an_ask_for_everyone_answers_once);
