@@ -3,6 +3,8 @@
 #include "scenario/text.h"
 #include "totals.h"
 
+#include "motehound/wire.h"
+
 #include "motehound_cluster_t.h"
 #include "motehound_frame_t.h"
 #include "motehound_mote_t.h"
@@ -69,8 +71,11 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
     bus->failed = bus->failed || !sound;
 }
 
-/* The longest message: names are short and all other fields fixed. */
-enum { ENCODED_MAX = 1024 + 64 * TOTAL_COUNT, CLUSTER_MEMBERS_MAX = 16 * TOTAL_COUNT };
+/* The longest message: the totals, whose names are short, or a cluster; all other fields are fixed. */
+enum {
+    CLUSTER_MEMBERS_MAX = MH_CLUSTER_MAX > MH_FORM_MEMBERS ? MH_CLUSTER_MAX : MH_FORM_MEMBERS,
+    ENCODED_MAX = 1024 + 64 * TOTAL_COUNT + 4 * CLUSTER_MEMBERS_MAX
+};
 
 /* Encode a message of a generated type and publish it at `at_s`. */
 #define PUBLISH(bus, channel, type, message, at_s)                                                                     \
