@@ -84,9 +84,9 @@ def plain(value: Any) -> Any:
 
 
 def rows(message: Any) -> Iterator[list[Any]]:
-    """One row; where a type has arrays of variable length, one row for each of their elements."""
+    """One row; where a type has arrays of variable length, one row for each of their elements, and one if there are none."""
     lists = [value for name in message.__slots__ if isinstance(value := getattr(message, name), (list, tuple))]
-    for index in range(max(map(len, lists)) if lists else 1):
+    for index in range(max([1, *map(len, lists)])):
         yield [cell(message, name, index) for name in message.__slots__]
 
 

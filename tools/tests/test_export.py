@@ -58,6 +58,16 @@ def test_csv_has_every_message_and_value(tmp_path: Path) -> None:
     assert kinds.count("beacon") == kinds.count("report") == 20
 
 
+def test_csv_has_a_cluster_without_members(tmp_path: Path) -> None:
+    clusters = [
+        message("motehound.cluster_t", time_s=float(len(members)), head=7, count=len(members), members=members)
+        for members in ([], [3, 5])
+    ]
+    export.write(write_log(tmp_path / "a.lcm", [("CLUSTER", one) for one in clusters]), "csv", tmp_path / "out")
+    rows = table(tmp_path / "out" / "MOTEHOUND_CLUSTER.csv")
+    assert [(row["head"], row["count"], row["members"]) for row in rows] == [("7", "0", ""), ("7", "2", "3"), ("7", "2", "5")]
+
+
 def test_mcap_has_every_message_and_value(tmp_path: Path) -> None:
     told = small_run()
     export.write(write_log(tmp_path / "a.lcm", told), "mcap", tmp_path / "a.mcap")
