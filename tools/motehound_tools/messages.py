@@ -29,7 +29,10 @@ def generate(folder: str) -> list[str]:
     if generator is None:
         raise Failure("lcm-gen: not found beside this Python or on the PATH; tools/setup run installs it")
     files = [str(path) for path in sorted((ROOT / "lcm_types").glob("*.lcm"))]
-    done = subprocess.run([generator, "-p", "--ppath", folder, *files], capture_output=True, text=True)
+    try:
+        done = subprocess.run([generator, "-p", "--ppath", folder, *files], capture_output=True, text=True)
+    except OSError as error:  # so does a script whose interpreter is gone
+        raise Failure(f"{generator}: cannot run: {error.strerror}; tools/setup run makes it anew") from error
     if done.returncode:
         raise Failure(f"lcm-gen: {(done.stderr or done.stdout).strip() or done.returncode}".replace("\n", "; "))
     return sorted(path.name for path in Path(folder).iterdir() if path.is_dir())
