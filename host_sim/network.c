@@ -413,7 +413,7 @@ static int make_host(struct network *network)
     const struct roster *roster = network->config.roster;
     const struct host_provider *hosts = network->config.hosts;
     const uint32_t *order = radio_order(&network->radio);
-    return hosts ? hosts->open(hosts->context, &network->host, roster->count, order)
+    return hosts ? hosts->open(hosts->context, &network->host, roster->count, order, network->config.seed)
                  : host_in_process(&network->host, roster->count, order, roster->kit.protocol.protocol);
 }
 

@@ -182,6 +182,7 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
         .report = report,
     };
     struct mote_kit *kit = &roster->kit;
+    roster->seed = seed;
     if (tracker_choose(scenario, NULL, &kit->tracker, error, error_size) ||
         protocol_choose("direct", scenario, &kit->protocol, error, error_size) ||
         find_motes(replay, error, error_size)) {

@@ -121,6 +121,7 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     }
     roster->count = (uint32_t)nodes + 1;
     roster->sink_id = roster->deployment.nodes[nodes - 1].id + 1;
+    tracker_seed(&roster->kit.tracker, (uint32_t)roster->seed);
     const struct scenario_field field = scenario_field(scenario);
     roster->sink_x_m = field.sink_x_m;
     roster->sink_y_m = field.sink_y_m;

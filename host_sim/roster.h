@@ -45,7 +45,7 @@ struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct
 /* The motes of `scenario` run with `seed`. Returns 0, or -1 with one line in `error`; roster_free it in any case. */
 int roster_make(struct roster *roster, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size);
 
-/* The same where the caller has filled in the deployment and the kit. */
+/* The same where the caller has filled in the seed, the deployment and the kit. */
 int roster_complete(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size);
 
 void roster_free(struct roster *roster);

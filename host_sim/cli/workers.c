@@ -28,10 +28,10 @@ static char *scenario_text(const struct scenario *scenario)
     return text;
 }
 
-static int open_host(void *context, struct host *host, uint32_t count, const uint32_t *order)
+static int open_host(void *context, struct host *host, uint32_t count, const uint32_t *order, uint64_t seed)
 {
     const struct workers *workers = context;
-    return host_remote(host, count, order, workers->scenario, workers->pool);
+    return host_remote(host, count, order, workers->scenario, seed, workers->pool);
 }
 
 static void tell_waiting(unsigned missing)

@@ -107,10 +107,10 @@ struct host {
  * broadcast finds them in few pages of memory. `order` outlives the host. Returns 0, or -1 if there is no memory. */
 int host_in_process(struct host *host, uint32_t count, const uint32_t *order, const struct mh_protocol *protocol);
 
-/* Where the motes of a run live, if not in this process: open() makes their host, as host_in_process does. */
+/* Where the motes of a run live, if not in this process: open() makes their host, as host_in_process does. `seed` is the run's. */
 struct host_provider {
     void *context;
-    int (*open)(void *context, struct host *host, uint32_t count, const uint32_t *order);
+    int (*open)(void *context, struct host *host, uint32_t count, const uint32_t *order, uint64_t seed);
 };
 
 /* One more action, to be filled in; NULL if there is no memory. */

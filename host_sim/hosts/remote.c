@@ -21,6 +21,7 @@ struct share {
 struct remote {
     struct worker_pool *pool;
     const char *scenario;
+    uint64_t seed;
     struct host_mote sink;
     uint32_t count;
     unsigned workers;
@@ -126,6 +127,7 @@ static int assign(struct remote *remote, char *error, size_t error_size)
 {
     for (unsigned w = 0; w < remote->workers; w++) {
         motehound_worker_assign_t message = {.scenario = (char *)remote->scenario,
+                                             .seed = (int64_t)remote->seed,
                                              .count = (int32_t)remote->shares[w].mote_count,
                                              .sink = (int32_t)remote->sink.id,
                                              .sink_x_mm = remote->sink.place.x_mm,
@@ -314,7 +316,7 @@ static void destroy(void *state)
     free(remote);
 }
 
-int host_remote(struct host *host, uint32_t count, const uint32_t *order, const char *scenario,
+int host_remote(struct host *host, uint32_t count, const uint32_t *order, const char *scenario, uint64_t seed,
                 struct worker_pool *pool)
 {
     struct remote *remote = calloc(1, sizeof *remote);
@@ -323,6 +325,7 @@ int host_remote(struct host *host, uint32_t count, const uint32_t *order, const 
     }
     remote->pool = pool;
     remote->scenario = scenario;
+    remote->seed = seed;
     remote->count = count;
     remote->order = order;
     remote->workers = worker_pool_count(pool);

@@ -68,6 +68,7 @@ static int make_motes(struct motes *motes, const motehound_worker_assign_t *mess
         mote_kit_make(&motes->kit, &motes->scenario, error, error_size) != 0) {
         return -1;
     }
+    tracker_seed(&motes->kit.tracker, (uint32_t)message->seed);
     mote_kit_tell_sink(&motes->kit, (mh_node_id)message->sink,
                        (struct mh_place){message->sink_x_mm, message->sink_y_mm, message->sink_z_mm});
     motes->count = count;

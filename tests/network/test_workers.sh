@@ -47,6 +47,12 @@ accepted "${clusters[@]}" --out clusters2 --bus "$bus" --workers 2 --drop-share 
 same clusters clusters2
 awk -F, 'NR == 1 {for (i = 1; i <= NF; i++) at[$i] = i} NR == 2 {exit !($at["estimates"] > 10 && $at["clusters"] > 0)}' clusters/runs.csv || complain "no cluster led"
 
+# particles of the run's own, wherever they are drawn
+particles=("$MOTEHOUND" run zhou_real --set source.duration_s=60 --set tracker.name=pftl --runs 2 --seed 3)
+accepted "${particles[@]}" --out particles
+accepted "${particles[@]}" --out particles2 --bus "$bus" --workers 2
+same particles particles2
+
 # a worker from elsewhere joins; it ends when the run does
 "$MOTEHOUND" worker --bus "$bus" 2>joined.txt & joined=$!
 accepted "${small[@]}" --out alone
