@@ -39,7 +39,7 @@
  * mote has to tell the fate of what it sends (mh_mote_sent). Of a form_t's members MH_FORM_MEMBERS are told, so many can be asked by the rules
  * with members. Ticks wrap, so what a node knows of a track is forgotten after a day without news.
  *
- * Memory: a mote that can lead with the tracker `range` takes 8.6 kB and 2.7 kB of stack on a Cortex-M0 (docs/costs.md). On an ATmega128 that is 3.0 kB,
+ * Memory: a mote that can lead with the tracker `range` takes 8.3 kB and 2.2 kB of stack on a Cortex-M0 (docs/costs.md). On an ATmega128 that is 3.0 kB,
  * 0.3 kB of constants and 1.2 kB of stack with the default capacities: its 4 KB hold such a mote only with smaller ones, e.g. 2.1 kB with MH_REPORTS_MAX 9,
  * MH_NEIGHBOURS_MAX 8, MH_LINK_QUEUE_MAX 2 and MH_LINK_SEEN_MAX 4. */
 #ifndef MOTEHOUND_CLUSTER_H

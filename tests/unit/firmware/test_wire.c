@@ -153,7 +153,7 @@ static struct mh_message enveloped(enum mh_message_kind kind, enum mh_envelope_k
 }
 
 /* A form_t or a hand_over_t and a face_t are longer than a frame together. */
-static bool fits(int kind, int envelope)
+static bool fits(enum mh_message_kind kind, int envelope)
 {
     return envelope != MH_ENVELOPE_FACE || (kind != MH_MESSAGE_FORM && kind != MH_MESSAGE_HAND_OVER);
 }
@@ -466,7 +466,8 @@ static void only_what_is_spoken_is_understood(void)
 {
     static mh_wire_types few[] = {&mh_wire_report, &mh_wire_route, NULL};
     for (int kind = 0; kind < MH_MESSAGE_KINDS; kind++) {
-        for (int envelope = MH_ENVELOPE_NONE; fits(kind, envelope) && envelope < MH_ENVELOPE_KINDS; envelope++) {
+        for (int envelope = MH_ENVELOPE_NONE;
+             fits((enum mh_message_kind)kind, envelope) && envelope < MH_ENVELOPE_KINDS; envelope++) {
             const struct mh_message message = enveloped((enum mh_message_kind)kind, (enum mh_envelope_kind)envelope);
             const bool spoken = kind == MH_MESSAGE_REPORT && envelope != MH_ENVELOPE_FACE;
             encode(&message);
@@ -530,8 +531,9 @@ static void any_bytes_are_safe(void)
     for (uint16_t trial = 0; trial < 300; trial++) {
         const int kind = (int)(trial % MH_MESSAGE_KINDS),
                   envelope = (int)(trial / MH_MESSAGE_KINDS % MH_ENVELOPE_KINDS);
-        const struct mh_message message = enveloped(
-            (enum mh_message_kind)kind, fits(kind, envelope) ? (enum mh_envelope_kind)envelope : MH_ENVELOPE_ROUTE);
+        const struct mh_message message =
+            enveloped((enum mh_message_kind)kind,
+                      fits((enum mh_message_kind)kind, envelope) ? (enum mh_envelope_kind)envelope : MH_ENVELOPE_ROUTE);
         encode(&message);
         for (size_t i = 8; i < length - 2; i++) {
             random = random * 1664525u + 1013904223u;

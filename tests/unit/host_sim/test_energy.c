@@ -188,7 +188,7 @@ static void wake_windows_are_listened_through(void)
         NEAR(integral, energy_used_j(&energy, mote, now));
         NEAR(1e-6 * 0.0015 * (double)asleep, joules[ENERGY_SLEEP][ENERGY_IDLE]);
         NEAR(1e-6 * 0.009 * (double)(listening + woken), joules[ENERGY_LISTEN][ENERGY_IDLE]);
-        TEST_ASSERT_TRUE(asleep > 1e8 && woken > 1e6);
+        TEST_ASSERT_TRUE(asleep > 100000000 && woken > 1000000);
     }
 }
 
