@@ -1,6 +1,7 @@
 /* The published bounds of the walk at density 12, means over 20 seeds of two hours each, and the filter that knows all of the model beside them. */
 #include "bounds/hindsight.h"
 #include "bounds/pcrb.h"
+#include "host_sim/scenarios.h"
 #include "port.h"
 #include "unity.h"
 
@@ -18,13 +19,7 @@ static struct scenario scenario;
 void setUp(void)
 {
     TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
-    scenario.source.path = PATH_GAUSS_MARKOV;
-    scenario.source.duration_s = 7200;
-    scenario.sensor.interval_s = 2;
-    scenario.sensor.quantity = QUANTITY_RANGE;
-    scenario.network.nodes = 1000;
-    scenario.network.layout = LAYOUT_HASHED;
-    scenario.network.density = 12;
+    walk_among_nodes(&scenario);
 }
 
 void tearDown(void) { scenario_free(&scenario); }

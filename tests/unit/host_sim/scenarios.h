@@ -1,4 +1,4 @@
-/* The two published paths, as the scenarios of these tests. */
+/* The published paths and the published field of a ranged target, as the scenarios of these tests. */
 #ifndef SCENARIOS_H
 #define SCENARIOS_H
 
@@ -43,6 +43,18 @@ static inline struct scenario e2(void)
     scenario.source.points = e2_points;
     scenario.source.points_count = 7;
     return scenario;
+}
+
+/* Of a scenario that scenario_init has filled: a ranged target walks for two hours among 1,000 nodes. */
+static inline void walk_among_nodes(struct scenario *scenario)
+{
+    scenario->source.path = PATH_GAUSS_MARKOV;
+    scenario->source.duration_s = 7200;
+    scenario->sensor.interval_s = 2;
+    scenario->sensor.quantity = QUANTITY_RANGE;
+    scenario->network.nodes = 1000;
+    scenario->network.layout = LAYOUT_HASHED;
+    scenario->network.density = 12;
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* The published answers of the recipe for lambda 12, 10 mph and seed 1, and what its numbers are by definition. */
 #include "port.h"
+#include "scenarios.h"
 #include "unity.h"
 #include "world/deployment.h"
 #include "world/mobility.h"
@@ -15,13 +16,7 @@ static struct scenario scenario;
 void setUp(void)
 {
     TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
-    scenario.source.path = PATH_GAUSS_MARKOV;
-    scenario.source.duration_s = 7200;
-    scenario.sensor.interval_s = 2;
-    scenario.sensor.quantity = QUANTITY_RANGE;
-    scenario.network.nodes = 1000;
-    scenario.network.layout = LAYOUT_HASHED;
-    scenario.network.density = 12;
+    walk_among_nodes(&scenario);
 }
 
 void tearDown(void) { scenario_free(&scenario); }
