@@ -165,12 +165,25 @@ static void on_frame(void *context, double time_s, mh_node_id sender, mh_node_id
     PUBLISH(bus, BUS_FRAME, motehound_frame_t, message, message.time_s);
 }
 
+/* What the tracker says of its own uncertainty, and of the source's release. */
+static void put_states(motehound_track_t *message, const struct mh_estimate *estimate)
+{
+    message->cov_xx_m2 = (double)estimate->covariance.xx;
+    message->cov_xy_m2 = (double)estimate->covariance.xy;
+    message->cov_yy_m2 = (double)estimate->covariance.yy;
+    for (size_t i = 0; i < sizeof message->cov_more / sizeof message->cov_more[0]; i++) {
+        message->cov_more[i] = (double)estimate->covariance_more[i];
+    }
+    message->states = estimate->states;
+    message->rate = (double)estimate->rate;
+}
+
 static void on_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
                         const struct truth *at_time, const struct truth *at_arrival)
 {
     struct bus *bus = context;
     const double origin_x = estimate->origin.x_mm * 1e-3, origin_y = estimate->origin.y_mm * 1e-3;
-    const motehound_track_t message = {
+    motehound_track_t message = {
         .time_s = at_time->time_s,
         .run = bus->run,
         .target = estimate->target,
@@ -178,9 +191,6 @@ static void on_estimate(void *context, double time_s, mh_node_id head, const str
         .y_m = origin_y + (double)estimate->position.y,
         .vx_mps = (double)estimate->velocity.x,
         .vy_mps = (double)estimate->velocity.y,
-        .cov_xx_m2 = (double)estimate->covariance.xx,
-        .cov_xy_m2 = (double)estimate->covariance.xy,
-        .cov_yy_m2 = (double)estimate->covariance.yy,
         .raw_x_m = origin_x + (double)estimate->raw.x,
         .raw_y_m = origin_y + (double)estimate->raw.y,
         .arrival_s = at_arrival->time_s,
@@ -194,6 +204,7 @@ static void on_estimate(void *context, double time_s, mh_node_id head, const str
         .arrival_x_m = at_arrival->x_m,
         .arrival_y_m = at_arrival->y_m,
     };
+    put_states(&message, estimate);
     PUBLISH(bus, BUS_TRACK, motehound_track_t, message, time_s);
 }
 
@@ -202,7 +213,7 @@ static void on_sink(void *context, double time_s, const struct mh_estimate *esti
     struct bus *bus = context;
     const double x_m = estimate->origin.x_mm * 1e-3 + (double)estimate->position.x;
     const double y_m = estimate->origin.y_mm * 1e-3 + (double)estimate->position.y;
-    const motehound_track_t message = {
+    motehound_track_t message = {
         .time_s = at_time->time_s,
         .run = bus->run,
         .target = estimate->target,
@@ -221,6 +232,7 @@ static void on_sink(void *context, double time_s, const struct mh_estimate *esti
         .arrival_x_m = at_time->x_m,
         .arrival_y_m = at_time->y_m,
     };
+    put_states(&message, estimate);
     PUBLISH(bus, BUS_SINK, motehound_track_t, message, time_s);
 }
 

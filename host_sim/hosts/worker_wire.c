@@ -172,9 +172,11 @@ int worker_event_read(const motehound_worker_event_t *message, struct host_event
     return 0;
 }
 
+enum { COVARIANCE_MORE = sizeof((struct mh_estimate *)NULL)->covariance_more / sizeof(mh_real) };
+
 static motehound_worker_estimate_t estimate_message(const struct mh_estimate *estimate)
 {
-    return (motehound_worker_estimate_t){
+    motehound_worker_estimate_t message = {
         .origin_mm = {estimate->origin.x_mm, estimate->origin.y_mm, estimate->origin.z_mm},
         .time_ticks = estimate->time,
         .position_m = {(double)estimate->position.x, (double)estimate->position.y},
@@ -187,12 +189,18 @@ static motehound_worker_estimate_t estimate_message(const struct mh_estimate *es
         .age_s = (double)estimate->age,
         .measurements = estimate->measurements,
         .target = estimate->target,
+        .rate = (double)estimate->rate,
+        .states = estimate->states,
         .flags = estimate->flags};
+    for (size_t i = 0; i < COVARIANCE_MORE; i++) {
+        message.covariance_more[i] = (double)estimate->covariance_more[i];
+    }
+    return message;
 }
 
 static struct mh_estimate estimate_read(const motehound_worker_estimate_t *message)
 {
-    return (struct mh_estimate){
+    struct mh_estimate estimate = {
         .origin = {message->origin_mm[0], message->origin_mm[1], message->origin_mm[2]},
         .time = (mh_tick)message->time_ticks,
         .position = {(mh_real)message->position_m[0], (mh_real)message->position_m[1]},
@@ -206,7 +214,13 @@ static struct mh_estimate estimate_read(const motehound_worker_estimate_t *messa
         .age = (mh_real)message->age_s,
         .measurements = (uint16_t)message->measurements,
         .target = (uint8_t)message->target,
+        .rate = (mh_real)message->rate,
+        .states = (uint8_t)message->states,
         .flags = (uint8_t)message->flags};
+    for (size_t i = 0; i < COVARIANCE_MORE; i++) {
+        estimate.covariance_more[i] = (mh_real)message->covariance_more[i];
+    }
+    return estimate;
 }
 
 motehound_worker_action_t worker_action_message(const struct host_action *action, motehound_worker_estimate_t *estimate)

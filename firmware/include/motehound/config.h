@@ -55,12 +55,33 @@
 #endif
 #endif
 
-/* A track that is handed from head to head, in bytes. The tracker `msl` hands over as many of its particles as find room. */
+/* A track that is handed from head to head, in bytes. The tracker `msl` hands over as many of its particles as find room, the tracker `gas` as many
+ * sensors. */
 #ifndef MH_TRACK_BYTES_MAX
 #ifdef __AVR__
 #define MH_TRACK_BYTES_MAX 128
 #else
 #define MH_TRACK_BYTES_MAX 256
+#endif
+#endif
+
+/* What a cluster head tells a fusion centre of its track, in bytes: at most the mean and two covariances of four states, and a byte. */
+#define MH_SUMMARY_BYTES_MAX 97
+
+/* States of a struct mh_gaussian, 4 (n + n (n + 1) / 2) bytes whatever part of it is used; and measured numbers that an update takes at
+ * once (stacked), which cost 2 n^2 bytes of stack. */
+#ifndef MH_STATES_MAX
+#ifdef __AVR__
+#define MH_STATES_MAX 4
+#else
+#define MH_STATES_MAX 6
+#endif
+#endif
+#ifndef MH_STACKED_MAX
+#ifdef __AVR__
+#define MH_STACKED_MAX 4
+#else
+#define MH_STACKED_MAX 8
 #endif
 #endif
 
@@ -192,8 +213,14 @@
 #if MH_PARTICLES_MAX < 1 || MH_PARTICLES_MAX > 4096
 #error "MH_PARTICLES_MAX must be 1 to 4096: a step draws up to 200 times as many, in one go"
 #endif
-#if MH_TRACK_BYTES_MAX < 64 || MH_TRACK_BYTES_MAX > 1024
-#error "MH_TRACK_BYTES_MAX must be 64 to 1024: a constant-velocity filter takes 60, and each part of it is a frame"
+#if MH_TRACK_BYTES_MAX < 64 || MH_TRACK_BYTES_MAX > 1900
+#error "MH_TRACK_BYTES_MAX must be 64 to 1900: a constant-velocity filter takes 60, and it travels in at most 31 frames"
+#endif
+#if MH_STATES_MAX < 4 || MH_STATES_MAX > 16
+#error "MH_STATES_MAX must be 4 to 16: position and velocity in the plane are four, and the work grows with the cube"
+#endif
+#if MH_STACKED_MAX < 1 || MH_STACKED_MAX > 64
+#error "MH_STACKED_MAX must be 1 to 64: a stacked update inverts a matrix of this size"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"

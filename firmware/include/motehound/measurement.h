@@ -16,6 +16,9 @@ enum {
     MH_MEASUREMENT_ASKED = 2          /* reported only because a head asked */
 };
 
+/* Targets that stand for what an anemometer measures: the wind blows so fast towards +x and towards +y, m/s. */
+enum { MH_TARGET_WIND_X = 254, MH_TARGET_WIND_Y = 255 };
+
 struct mh_measurement {
     mh_node_id node;
     struct mh_place place; /* of the node */

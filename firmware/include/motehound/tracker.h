@@ -43,6 +43,20 @@ struct mh_tracker {
     /* The target is not where the track has it: the next step looks for it about the nodes that measure it. NULL if the tracker finds out
      * for itself. */
     void (*restart)(void *state);
+
+    /* How good a next head node `candidate` would be, at places[0], with neighbours at places[1 .. count): the larger the better -> *score.
+     * Errors: MH_NONE (no track). NULL if it does not matter to the tracker. */
+    enum mh_status (*score)(const void *state, mh_node_id candidate, const struct mh_place *places, size_t count,
+                            mh_real *score);
+
+    /* What a fusion centre (centre.h) is to know of the track at `time`, at or after the last step -> bytes[0 .. *length), at most
+     * MH_SUMMARY_BYTES_MAX, the same on every machine. Errors: MH_NONE (no track). NULL if the tracker has no such thing. */
+    enum mh_status (*summarise)(void *state, mh_tick time, uint8_t *bytes, size_t *length);
+    /* The centre has the summary of `time`. With summarise. */
+    void (*summary_taken)(void *state, mh_tick time);
+    /* What the centre has made of all summaries of `time` -> the track. Errors: MH_ERR_CORRUPT (not what a centre writes), MH_ERR_TIME (too old to
+     * be of use); the state is as it was. With summarise. */
+    enum mh_status (*correct)(void *state, mh_tick time, const uint8_t *bytes, size_t length);
 };
 
 #endif
