@@ -48,6 +48,10 @@ static struct truth truth_at(const struct recording *recording, double time_s)
     truth.present = true;
     truth.x_m = rows[low].x_m + share * (rows[high].x_m - rows[low].x_m);
     truth.y_m = rows[low].y_m + share * (rows[high].y_m - rows[low].y_m);
+    if (span > 0) {
+        truth.vx_mps = (rows[high].x_m - rows[low].x_m) / span;
+        truth.vy_mps = (rows[high].y_m - rows[low].y_m) / span;
+    }
     return truth;
 }
 

@@ -38,8 +38,11 @@ static struct truth truth_at(const struct run *run, double time_s)
     struct truth truth = {.time_s = time_s, .present = path->count > 0 && time_s >= 0 && time_s <= path->duration_s};
     if (truth.present) {
         const struct point p = trajectory_position(path, time_s);
+        const struct point v = trajectory_velocity(path, time_s);
         truth.x_m = p.x_m;
         truth.y_m = p.y_m;
+        truth.vx_mps = v.x_m;
+        truth.vy_mps = v.y_m;
     }
     return truth;
 }

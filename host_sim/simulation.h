@@ -11,10 +11,12 @@
 
 #include <signal.h>
 
-/* Where the source truly is. */
+/* Where the source truly is, and what it does. */
 struct truth {
     double time_s, x_m, y_m;
-    bool present; /* it is on its way (it has begun and not ended); else x_m = y_m = 0 */
+    bool present; /* it is on its way (it has begun and not ended); else all but the time is 0 */
+    double vx_mps, vy_mps;
+    double rate; /* at which it releases, in the unit of an estimate's: mL/s of gas; 0 where no estimate has one */
 };
 
 /* How a mote is. */

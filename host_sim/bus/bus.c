@@ -143,8 +143,14 @@ static void on_node(void *context, mh_node_id id, const struct mh_place *place)
 static void on_truth(void *context, const struct truth *truth)
 {
     struct bus *bus = context;
-    const motehound_truth_t message = {
-        .time_s = truth->time_s, .run = bus->run, .present = truth->present, .x_m = truth->x_m, .y_m = truth->y_m};
+    const motehound_truth_t message = {.time_s = truth->time_s,
+                                       .run = bus->run,
+                                       .present = truth->present,
+                                       .x_m = truth->x_m,
+                                       .y_m = truth->y_m,
+                                       .vx_mps = truth->vx_mps,
+                                       .vy_mps = truth->vy_mps,
+                                       .rate = truth->rate};
     PUBLISH(bus, BUS_TRUTH, motehound_truth_t, message, message.time_s);
 }
 
@@ -171,11 +177,25 @@ static void put_states(motehound_track_t *message, const struct mh_estimate *est
     message->cov_xx_m2 = (double)estimate->covariance.xx;
     message->cov_xy_m2 = (double)estimate->covariance.xy;
     message->cov_yy_m2 = (double)estimate->covariance.yy;
-    for (size_t i = 0; i < sizeof message->cov_more / sizeof message->cov_more[0]; i++) {
-        message->cov_more[i] = (double)estimate->covariance_more[i];
-    }
+    message->cov_13 = (double)estimate->covariance_more[0];
+    message->cov_23 = (double)estimate->covariance_more[1];
+    message->cov_33 = (double)estimate->covariance_more[2];
+    message->cov_14 = (double)estimate->covariance_more[3];
+    message->cov_24 = (double)estimate->covariance_more[4];
+    message->cov_34 = (double)estimate->covariance_more[5];
+    message->cov_44 = (double)estimate->covariance_more[6];
     message->states = estimate->states;
     message->rate = (double)estimate->rate;
+}
+
+static void put_truth(motehound_track_t *message, const struct truth *truth)
+{
+    message->true_known = truth->present;
+    message->true_x_m = truth->x_m;
+    message->true_y_m = truth->y_m;
+    message->true_vx_mps = truth->vx_mps;
+    message->true_vy_mps = truth->vy_mps;
+    message->true_rate = truth->rate;
 }
 
 static void on_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
@@ -197,13 +217,11 @@ static void on_estimate(void *context, double time_s, mh_node_id head, const str
         .measurements = estimate->measurements,
         .flags = estimate->flags,
         .head = (int32_t)head,
-        .true_known = at_time->present,
-        .true_x_m = at_time->x_m,
-        .true_y_m = at_time->y_m,
         .arrival_known = at_arrival->present,
         .arrival_x_m = at_arrival->x_m,
         .arrival_y_m = at_arrival->y_m,
     };
+    put_truth(&message, at_time);
     put_states(&message, estimate);
     PUBLISH(bus, BUS_TRACK, motehound_track_t, message, time_s);
 }
@@ -225,13 +243,11 @@ static void on_sink(void *context, double time_s, const struct mh_estimate *esti
         .raw_y_m = y_m,
         .arrival_s = at_time->time_s,
         .head = -1,
-        .true_known = at_time->present,
-        .true_x_m = at_time->x_m,
-        .true_y_m = at_time->y_m,
         .arrival_known = at_time->present,
         .arrival_x_m = at_time->x_m,
         .arrival_y_m = at_time->y_m,
     };
+    put_truth(&message, at_time);
     put_states(&message, estimate);
     PUBLISH(bus, BUS_SINK, motehound_track_t, message, time_s);
 }

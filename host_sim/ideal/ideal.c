@@ -383,7 +383,9 @@ static void sample(struct run *run)
 {
     const double time_s = (double)run->sample * run->scenario->sensor.interval_s;
     const struct point p = trajectory_position(&run->path, time_s);
-    run->truth = (struct truth){.time_s = time_s, .x_m = p.x_m, .y_m = p.y_m, .present = true};
+    const struct point v = trajectory_velocity(&run->path, time_s);
+    run->truth =
+        (struct truth){.time_s = time_s, .x_m = p.x_m, .y_m = p.y_m, .present = true, .vx_mps = v.x_m, .vy_mps = v.y_m};
     if (run->observer->truth) {
         run->observer->truth(run->observer->context, &run->truth);
     }

@@ -1,5 +1,7 @@
 #include "record/metrics.h"
 
+#include "motehound/matrix.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -19,15 +21,44 @@ static double error_of(const motehound_track_t *track)
     return hypot(track->x_m - track->true_x_m, track->y_m - track->true_y_m);
 }
 
-/* Normalised squared error of the position; NaN where no covariance is stated. */
+/* e' P^-1 e by elimination; P is packed as motehound/matrix.h says, and overwritten, as e is. NaN unless P is positive definite. */
+static double normalised(int n, double *P, double *e)
+{
+    double sum = 0;
+    for (int k = 0; k < n; k++) {
+        const double pivot = P[MH_PACKED(k, k)];
+        if (!(pivot > 0)) {
+            return (double)NAN;
+        }
+        sum += e[k] * e[k] / pivot;
+        for (int j = k + 1; j < n; j++) {
+            const double factor = P[MH_PACKED(k, j)] / pivot;
+            e[j] -= factor * e[k];
+            for (int i = k + 1; i <= j; i++) {
+                P[MH_PACKED(i, j)] -= factor * P[MH_PACKED(k, i)];
+            }
+        }
+    }
+    return sum;
+}
+
+/* Normalised squared error of all states that a covariance is stated of; NaN where there are none. */
 static double nees_of(const motehound_track_t *track)
 {
-    const double x = track->x_m - track->true_x_m, y = track->y_m - track->true_y_m;
-    const double determinant = track->cov_xx_m2 * track->cov_yy_m2 - track->cov_xy_m2 * track->cov_xy_m2;
-    if (!(track->cov_xx_m2 > 0) || !(determinant > 0)) {
+    enum { STATES_MAX = 4 };
+    double P[MH_PACKED_SIZE(STATES_MAX)] = {track->cov_xx_m2, track->cov_xy_m2, track->cov_yy_m2, track->cov_13,
+                                            track->cov_23,    track->cov_33,    track->cov_14,    track->cov_24,
+                                            track->cov_34,    track->cov_44};
+    double e[STATES_MAX] = {track->x_m - track->true_x_m, track->y_m - track->true_y_m};
+    if (track->states == 3) {
+        e[2] = track->rate - track->true_rate;
+    } else if (track->states == 4) {
+        e[2] = track->vx_mps - track->true_vx_mps;
+        e[3] = track->vy_mps - track->true_vy_mps;
+    } else if (track->states != 2) {
         return (double)NAN;
     }
-    return (track->cov_yy_m2 * x * x - 2 * track->cov_xy_m2 * x * y + track->cov_xx_m2 * y * y) / determinant;
+    return normalised(track->states, P, e);
 }
 
 int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)

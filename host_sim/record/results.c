@@ -50,7 +50,8 @@ int results_open(struct results *results, const char *out, const char *scenario_
     fputc('\n', results->runs);
     fputs(
         "run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,cov_xx_m2,cov_xy_m2,cov_yy_m2,"
-        "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags,head,sink_x_m,sink_y_m\n",
+        "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags,head,sink_x_m,sink_y_m,states,rate,"
+        "true_rate\n",
         results->track);
     return 0;
 }
@@ -88,6 +89,9 @@ static void put_track(FILE *file, unsigned run, const motehound_track_t *track, 
     fprintf(file, ",%ld,%lu", (long)track->flags, (unsigned long)(uint32_t)track->head);
     put_number(file, sink != NULL ? sink->x_m : none);
     put_number(file, sink != NULL ? sink->y_m : none);
+    fprintf(file, ",%ld", (long)track->states);
+    put_number(file, track->rate);
+    put_number(file, track->true_known ? track->true_rate : none);
     fputc('\n', file);
 }
 

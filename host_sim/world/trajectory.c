@@ -18,7 +18,8 @@ struct point leg_position(const struct leg *leg, double elapsed_s)
     return (struct point){leg->start.x_m + chord * cos(direction), leg->start.y_m + chord * sin(direction)};
 }
 
-struct point trajectory_position(const struct trajectory *trajectory, double time_s)
+/* The last leg that has begun, or the first. */
+static const struct leg *leg_at(const struct trajectory *trajectory, double time_s)
 {
     size_t first = 0, end = trajectory->count; /* the last leg of [first, end) that has begun */
     while (end - first > 1) {
@@ -29,8 +30,23 @@ struct point trajectory_position(const struct trajectory *trajectory, double tim
             end = middle;
         }
     }
-    const struct leg *leg = &trajectory->legs[first];
+    return &trajectory->legs[first];
+}
+
+struct point trajectory_position(const struct trajectory *trajectory, double time_s)
+{
+    const struct leg *leg = leg_at(trajectory, time_s);
     return leg_position(leg, fmin(fmax(time_s - leg->start_s, 0), leg->duration_s));
+}
+
+struct point trajectory_velocity(const struct trajectory *trajectory, double time_s)
+{
+    const struct leg *leg = leg_at(trajectory, time_s);
+    const double elapsed_s = time_s - leg->start_s;
+    const bool on_its_way = elapsed_s >= 0 && elapsed_s <= leg->duration_s;
+    const double speed_mps = on_its_way ? leg->speed_mps : 0;
+    const double heading_rad = leg->heading_rad + leg->curvature_radpm * speed_mps * elapsed_s;
+    return (struct point){speed_mps * cos(heading_rad), speed_mps * sin(heading_rad)};
 }
 
 double trajectory_length_m(const struct trajectory *trajectory)

@@ -42,6 +42,9 @@ struct point leg_position(const struct leg *leg, double elapsed_s);
 /* Position at `time_s`; before and after the path, its first and last point. */
 struct point trajectory_position(const struct trajectory *trajectory, double time_s);
 
+/* Velocity there, m/s; before and after the path none. */
+struct point trajectory_velocity(const struct trajectory *trajectory, double time_s);
+
 double trajectory_length_m(const struct trajectory *trajectory);
 
 #endif

@@ -98,7 +98,7 @@ grep -q position_rmse_m replayed/summary.json || complain "no errors with a trut
 # clusters: what the sink has is never farther from the head's position than the tolerance; of two scenarios one has frames
 followed=(--set tracker.name=pftl --set source.duration_s=400 --seed 1)
 accepted "$MOTEHOUND" run zhou_nominal "${followed[@]}" --out followed
-[ "$(head -1 followed/track.csv | cut -d, -f20-23)" = flags,head,sink_x_m,sink_y_m ] || complain "last columns of track.csv"
+[ "$(head -1 followed/track.csv | cut -d, -f20-26)" = flags,head,sink_x_m,sink_y_m,states,rate,true_rate ] || complain "last columns of track.csv"
 [ "$(wc -l <followed/track.csv)" = 202 ] || complain "positions at 201 instants: $(wc -l <followed/track.csv)"
 awk -F, 'NR > 1 && ($22 == "" || ($22 - $4) ^ 2 + ($23 - $5) ^ 2 > 25.001) { exit 1 }' followed/track.csv || complain "the sink is off by more than the tolerance"
 accepted "$MOTEHOUND" run zhou_real "${followed[@]}" --out followed

@@ -40,7 +40,7 @@ def frame(time_s: float, sender: int, destination: int = -1, kind: str = BEACON,
 
 def track(time_s: float, x: float, y: float, run: int = 0, **more: Any) -> Any:
     known = {"true_known": True, "true_x_m": x + 3.0, "true_y_m": y - 4.0}
-    cov = {"cov_xx_m2": 4.0, "cov_xy_m2": 0.0, "cov_yy_m2": 1.0}
+    cov = {"cov_xx_m2": 4.0, "cov_xy_m2": 0.0, "cov_yy_m2": 1.0, "states": 2}
     return message("motehound.track_t", time_s=time_s, run=run, x_m=x, y_m=y, **(known | cov | more))
 
 

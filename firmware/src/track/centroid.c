@@ -59,6 +59,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         estimate->measurements = (uint16_t)(count < UINT16_MAX ? count : UINT16_MAX);
         estimate->covariance.xx = estimate->covariance.yy =
             mh_squared(centroid->config.sensing_range_m) / (4.0f * (mh_real)count);
+        estimate->states = 2;
         estimate->flags = begins ? MH_ESTIMATE_STARTED : 0;
     }
     estimate->flags |= MH_ESTIMATE_REFRESHED;

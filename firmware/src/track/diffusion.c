@@ -380,6 +380,7 @@ static void extrapolate(const struct mh_diffusion *track, mh_tick time, struct m
     estimate->position.y =
         mh_clamp(last->place.y + ahead * estimate->velocity.y, fit->bounds.low.y, fit->bounds.high.y);
     estimate->raw = estimate->position;
+    estimate->states = 2;
 
     const mh_real f = ahead / duration, g = 1.0f + f, steps = ahead / interval;
     const mh_real turns = mh_squared(fit->model.turn_mps2 * interval * interval) * steps * (steps + 1.0f) *

@@ -173,6 +173,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     msl->position = mean;
     *estimate = answer_at(msl, time);
     estimate->covariance = covariance;
+    estimate->states = 2;
     estimate->measurements = (uint16_t)(count < UINT16_MAX ? count : UINT16_MAX);
     estimate->flags =
         (uint8_t)(MH_ESTIMATE_REFRESHED | (begins ? MH_ESTIMATE_STARTED : 0) | (count == 0 ? MH_ESTIMATE_COASTED : 0));

@@ -253,6 +253,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     }
     answer.origin = pftl->origin;
     answer.raw = answer.position;
+    answer.states = answer.covariance.xx > 0 ? 2 : 0;
     answer.stored = refreshed ? answer.position : expected;
     answer.velocity = answer.stored_velocity = pftl->buffer.velocity;
     *estimate = answer;

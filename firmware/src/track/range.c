@@ -408,6 +408,7 @@ static enum mh_status predict(const void *state, mh_tick time, struct mh_estimat
         .raw = position,
         .stored = position,
         .stored_velocity = range->followed.velocity,
+        .states = 2,
         .flags = MH_ESTIMATE_COASTED,
     };
     (void)mh_followed_predict(&range->followed, time, &answer.stored);

@@ -58,12 +58,13 @@ static void statistics_have_their_closed_forms(void)
 static void tell(const struct observer *observer, double time_s, bool present, float x, float y, float variance,
                  uint8_t target)
 {
-    const struct truth truth = {time_s, time_s, 0, present};
-    const struct truth arrival = {time_s - 0.5, time_s - 0.5, 0, present && time_s >= 0.5};
+    const struct truth truth = {.time_s = time_s, .x_m = time_s, .present = present};
+    const struct truth arrival = {.time_s = time_s - 0.5, .x_m = time_s - 0.5, .present = present && time_s >= 0.5};
     const struct mh_estimate estimate = {.origin = {10000, -20000, 0},
                                          .position = {x - 10, y + 20},
                                          .raw = {x - 10, y + 20 + 4},
                                          .covariance = {variance, 0, 4 * variance},
+                                         .states = variance > 0 ? 2 : 0,
                                          .age = 0.5f,
                                          .target = target};
     observer->truth(observer->context, &truth);
@@ -182,7 +183,7 @@ static void energy_metrics_cover_states_and_causes(void)
 /* Every other instant without a position; no covariance. */
 static void half_of_the_time(const struct observer *observer, int i)
 {
-    const struct truth truth = {i, i, 0, true};
+    const struct truth truth = {.time_s = i, .x_m = i, .present = true};
     if (i % 2 == 0) {
         tell(observer, i, true, (float)i, 0, 0, 0);
     } else {
@@ -196,6 +197,35 @@ static void what_a_tracker_does_not_state_does_not_apply(void)
     NEAR(0.5, values[METRIC_TRACKED_SHARE]);
     NEAR(0, values[METRIC_POSITION_RMSE_M]);
     TEST_ASSERT_TRUE(isnan(values[METRIC_NEES_MEDIAN]));
+}
+
+/* Three states: off by (1, 0) and the rate by 2; four: by (1, 0) and (2, 0). Two correlated ones with
+ * [4 2; 2 2]^-1 = [1/2 -1/2; -1/2 1], the others of variance 1: 1/2 - 2 + 4. */
+static void all_states(const struct observer *observer, int i, uint8_t states)
+{
+    const struct truth truth = {.time_s = i, .x_m = i - 1, .present = true, .vx_mps = 10, .rate = states == 3 ? 30 : 0};
+    struct mh_estimate estimate = {.position = {(float)i, 0},
+                                   .velocity = {12, 0},
+                                   .covariance = {4, 0, 1},
+                                   .covariance_more = {2, 0, 2, 0, 0, 0, 1},
+                                   .rate = states == 3 ? 32 : 0,
+                                   .states = states};
+    observer->truth(observer->context, &truth);
+    observer->estimate(observer->context, i, 0, &estimate, &truth, &truth);
+}
+
+static void with_rate(const struct observer *observer, int i) { all_states(observer, i, 3); }
+
+static void with_velocity(const struct observer *observer, int i) { all_states(observer, i, 4); }
+
+static void the_normalised_error_is_of_all_states_that_are_stated(void)
+{
+    run_of(10, with_rate);
+    NEAR(2.5, values[METRIC_NEES_MEDIAN]);
+    tearDown();
+    setUp();
+    run_of(10, with_velocity);
+    NEAR(2.5, values[METRIC_NEES_MEDIAN]);
 }
 
 static void blind(const struct observer *observer, int i) { tell(observer, i, false, 1, 2, 1, 0); }
@@ -231,7 +261,7 @@ static void a_track_is_lost_after_so_many_successive_errors_of_one_target(void)
 /* The head is off by 10 m, but by 60 m at instants 8 to 11 and silent at 20 to 24; the sink, told from instant 2 on, by 20 m. */
 static void followed_in_clusters(const struct observer *observer, int i)
 {
-    const struct truth truth = {i, i, 0, true};
+    const struct truth truth = {.time_s = i, .x_m = i, .present = true};
     const struct mh_estimate sink = {.position = {(float)i, 20}, .velocity = {1, 0}};
     if (i >= 20 && i < 25) {
         observer->truth(observer->context, &truth);
@@ -259,7 +289,7 @@ static void a_ranged_target_is_judged_by_its_sensing_range(void)
 /* Its last position comes 10 s before the end. */
 static void given_up(const struct observer *observer, int i)
 {
-    const struct truth truth = {i, i, 0, true};
+    const struct truth truth = {.time_s = i, .x_m = i, .present = true};
     if (i >= 4 && i < 30) {
         tell(observer, i, true, (float)i, 0, 0, 0);
     } else {
@@ -320,6 +350,7 @@ int main(void)
     RUN_TEST(metrics_have_names_of_their_own);
     RUN_TEST(energy_metrics_cover_states_and_causes);
     RUN_TEST(what_a_tracker_does_not_state_does_not_apply);
+    RUN_TEST(the_normalised_error_is_of_all_states_that_are_stated);
     RUN_TEST(without_truth_there_are_no_errors);
     RUN_TEST(a_track_is_lost_after_so_many_successive_errors_of_one_target);
     RUN_TEST(a_ranged_target_is_judged_by_its_sensing_range);

@@ -41,7 +41,12 @@ static void arcs_keep_their_distance_from_their_centre(void)
     for (double t = 0; t < path.legs[0].duration_s; t += 1) {
         const struct point p = trajectory_position(&path, t);
         ASSERT_NEAR(radius, hypot(p.x_m - centre.x_m, p.y_m - centre.y_m), 1e-9);
+        const struct point q = trajectory_position(&path, t + 1e-6), v = trajectory_velocity(&path, t);
+        ASSERT_NEAR((q.x_m - p.x_m) * 1e6, v.x_m, 1e-6);
+        ASSERT_NEAR((q.y_m - p.y_m) * 1e6, v.y_m, 1e-6);
     }
+    const struct point gone = trajectory_velocity(&path, path.duration_s + 1);
+    ASSERT_NEAR(0, hypot(gone.x_m, gone.y_m), 0);
 }
 
 static void waypoints(void)
