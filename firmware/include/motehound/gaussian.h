@@ -31,7 +31,41 @@ size_t mh_gaussian_write(const struct mh_gaussian *gaussian, uint8_t *bytes);
 /* And back, of n states; `gaussian` is untouched after an error. Errors: MH_ERR_CORRUPT (whatever mh_gaussian_check finds). */
 enum mh_status mh_gaussian_read(struct mh_gaussian *gaussian, uint8_t n, const uint8_t *bytes);
 
-/* x = F x, P = F P F' + Q: F n x n, row by row; Q packed. Errors: MH_ERR_NOT_FINITE, MH_ERR_SINGULAR. */
+/* x = F x, P = F P F' + Q: F n x n, row by row; Q packed, positive semidefinite. P is made as the product of F L with its transpose, P = L L', and
+ * what rounding would take from a pivot it gets back (MH_PIVOT_FLOOR). Zeros of F cost nothing: at most n^3 + n^2 multiplications, n roots and divisions.
+ * Errors: MH_ERR_ARGUMENT (n), MH_ERR_NOT_FINITE (an input, or the result overflows), MH_ERR_SINGULAR (P before, or F P F' + Q, is not positive definite). */
 enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *F, const mh_real *Q);
+
+/* P = F P F' + Q for a part of a covariance, which may be only positive semidefinite (nothing is checked): packed, n <= MH_STATES_MAX; Q NULL for none. */
+void mh_covariance_predict(uint8_t n, mh_real *P, const mh_real *F, const mh_real *Q);
+
+/* After an update: A = I - K H of it, n x n, row by row, from the Gaussians before and after, as P_after P_before^-1. With it follow the parts that a
+ * covariance is split into (fusion.h), P_part = A P_part A' + K R K': mh_covariance_predict(n, P_part, A, ...). Errors: as of mh_gaussian_check, of
+ * `before`; MH_ERR_ARGUMENT too if their numbers of states differ. */
+enum mh_status mh_gaussian_reduction(const struct mh_gaussian *before, const struct mh_gaussian *after, mh_real *A);
+
+/* A Gaussian while it is worked upon, with its covariance as P = L L', L lower triangular with a positive diagonal and packed. So P cannot lose its
+ * positive definiteness, whatever is done to L. For those who write filters; their users need it not. */
+struct mh_gaussian_root {
+    uint8_t n;
+    mh_real x[MH_STATES_MAX];
+    mh_real L[MH_PACKED_SIZE(MH_STATES_MAX)];
+};
+
+/* L from P. n^3 / 6 multiplications, n roots. Errors: as of mh_gaussian_check, which is this. */
+enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian);
+
+/* One scalar measured: c = L' h for its gradient h, its innovation, its noise variance. P becomes P - P h h' P / (h' P h + variance), as
+ * L becomes L T with T T' = I - c c' / (c' c + variance) and T lower triangular (Carlson, AIAA Journal 11, 1973, pp. 1259-1265, there with upper triangles):
+ * nothing is subtracted from a variance. n^2 + 4 n multiplications, n roots, 2 n divisions. What is not finite shows in mh_gaussian_compose. */
+void mh_gaussian_root_take(struct mh_gaussian_root *root, const mh_real *c, mh_real innovation, mh_real variance);
+
+/* P = L L', with every pivot at least MH_PIVOT_FLOOR of its diagonal element, so that it remains a covariance in mh_real. `gaussian` is untouched after
+ * an error: MH_ERR_NOT_FINITE (a state or a variance), MH_ERR_SINGULAR (a variance too small for mh_real). */
+enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh_gaussian_root *root);
+
+/* The same for x and P as they came out of a sum of products: `gaussian` itself is checked, and its pivots raised where rounding has swallowed them. Its
+ * contents are not to be used after an error, MH_ERR_NOT_FINITE or MH_ERR_SINGULAR. */
+enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian);
 
 #endif

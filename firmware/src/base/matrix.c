@@ -3,27 +3,63 @@
 /* Start of row i of the packed lower triangle. */
 static int row_start(int i) { return i * (i + 1) / 2; }
 
-enum mh_status mh_cholesky_factor(int n, mh_real *a)
+/* Row by row. A pivot below `floor` of its diagonal element is raised to that if it is at least `lowest` of it. */
+static enum mh_status factor(int n, mh_real *a, mh_real floor, mh_real lowest, bool *raised)
 {
     for (int i = 0; i < n; i++) {
         mh_real *row = a + row_start(i);
         const mh_real diagonal = row[i];
-        for (int j = 0; j <= i; j++) {
+        for (int j = 0; j < i; j++) {
             const mh_real *other = a + row_start(j);
             mh_real sum = row[j];
             for (int k = 0; k < j; k++) {
                 sum -= row[k] * other[k];
             }
-            if (j < i) {
-                row[j] = sum / other[j];
-            } else if (sum > 1e-7f * diagonal && mh_finite(sum)) {
-                row[i] = mh_sqrt(sum);
-            } else {
+            row[j] = sum / other[j];
+        }
+        mh_real pivot = diagonal;
+        for (int k = 0; k < i; k++) {
+            pivot -= row[k] * row[k];
+        }
+        if (!(pivot > floor * diagonal)) {
+            if (!(pivot > lowest * diagonal)) {
                 return MH_ERR_SINGULAR;
             }
+            pivot = floor * diagonal;
+            *raised = true;
         }
+        if (!(pivot > 0) || !mh_finite(pivot)) {
+            return MH_ERR_SINGULAR;
+        }
+        row[i] = mh_sqrt(pivot);
     }
     return MH_OK;
+}
+
+enum mh_status mh_cholesky_factor(int n, mh_real *a)
+{
+    bool raised;
+    return factor(n, a, 1e-7f, 1e-7f, &raised);
+}
+
+enum mh_status mh_cholesky_factor_raised(int n, mh_real *a, bool *raised)
+{
+    *raised = false;
+    return factor(n, a, MH_PIVOT_FLOOR, -MH_PIVOT_FLOOR, raised);
+}
+
+void mh_cholesky_multiply(int n, mh_real *l)
+{
+    /* element (i, j) needs rows i and j up to column j, which are still untouched when taken in this order */
+    for (int i = n - 1; i >= 0; i--) {
+        for (int j = i; j >= 0; j--) {
+            mh_real sum = 0.0f;
+            for (int k = 0; k <= j; k++) {
+                sum += l[row_start(i) + k] * l[row_start(j) + k];
+            }
+            l[row_start(i) + j] = sum;
+        }
+    }
 }
 
 void mh_cholesky_solve(int n, const mh_real *l, mh_real *b)

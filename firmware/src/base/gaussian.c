@@ -1,0 +1,230 @@
+#include "motehound/gaussian.h"
+
+#include "motehound/bytes.h"
+
+#include <string.h>
+
+#define SMALLEST 1.2e-38f /* of the normal floats */
+
+/* Numbers in use of a packed matrix of n states. */
+static uint_fast8_t packed_size(uint8_t n) { return (uint_fast8_t)MH_PACKED_SIZE(n); }
+
+static bool all_finite(const mh_real *a, uint_fast8_t count)
+{
+    bool finite = true;
+    for (uint_fast8_t i = 0; i < count; i++) {
+        finite = finite && mh_finite(a[i]);
+    }
+    return finite;
+}
+
+enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian)
+{
+    const uint8_t n = gaussian->n;
+    if (n < 1 || n > MH_STATES_MAX) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!all_finite(gaussian->x, n) || !all_finite(gaussian->P, packed_size(n))) {
+        return MH_ERR_NOT_FINITE;
+    }
+    root->n = n;
+    memcpy(root->x, gaussian->x, n * sizeof root->x[0]);
+    memcpy(root->L, gaussian->P, packed_size(n) * sizeof root->L[0]);
+    return mh_cholesky_factor(n, root->L);
+}
+
+enum mh_status mh_gaussian_check(const struct mh_gaussian *gaussian)
+{
+    struct mh_gaussian_root root;
+    return mh_gaussian_factor(&root, gaussian);
+}
+
+size_t mh_gaussian_write(const struct mh_gaussian *gaussian, uint8_t *bytes)
+{
+    const uint8_t n = gaussian->n;
+    uint8_t *at = bytes;
+    for (uint_fast8_t i = 0; i < n; i++) {
+        mh_put_real(&at, gaussian->x[i]);
+    }
+    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+        mh_put_real(&at, gaussian->P[i]);
+    }
+    return (size_t)MH_GAUSSIAN_BYTES(n);
+}
+
+enum mh_status mh_gaussian_read(struct mh_gaussian *gaussian, uint8_t n, const uint8_t *bytes)
+{
+    if (n < 1 || n > MH_STATES_MAX) {
+        return MH_ERR_CORRUPT;
+    }
+    struct mh_gaussian told;
+    const uint8_t *at = bytes;
+    told.n = n;
+    for (uint_fast8_t i = 0; i < n; i++) {
+        told.x[i] = mh_get_real(&at);
+    }
+    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+        told.P[i] = mh_get_real(&at);
+    }
+    if (mh_gaussian_check(&told) != MH_OK) {
+        return MH_ERR_CORRUPT;
+    }
+    memcpy(gaussian->x, told.x, n * sizeof told.x[0]);
+    memcpy(gaussian->P, told.P, packed_size(n) * sizeof told.P[0]);
+    gaussian->n = n;
+    return MH_OK;
+}
+
+enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian)
+{
+    const uint8_t n = gaussian->n;
+    mh_real L[MH_PACKED_SIZE(MH_STATES_MAX)];
+    bool raised;
+    if (!all_finite(gaussian->x, n) || !all_finite(gaussian->P, packed_size(n))) {
+        return MH_ERR_NOT_FINITE;
+    }
+    memcpy(L, gaussian->P, packed_size(n) * sizeof L[0]);
+    const enum mh_status status = mh_cholesky_factor_raised(n, L, &raised);
+    if (status == MH_OK && raised) {
+        mh_cholesky_multiply(n, L);
+        memcpy(gaussian->P, L, packed_size(n) * sizeof L[0]);
+    }
+    return status;
+}
+
+enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *F, const mh_real *Q)
+{
+    struct mh_gaussian_root root;
+    struct mh_gaussian next = *gaussian;
+    mh_real W[MH_STATES_MAX][MH_STATES_MAX]; /* F L */
+    enum mh_status status = mh_gaussian_factor(&root, gaussian);
+    if (status != MH_OK) {
+        return status;
+    }
+    const uint8_t n = root.n;
+    mh_real *p = next.P;
+    for (uint_fast8_t i = 0; i < n; i++) {
+        const mh_real *row = root.L;
+        next.x[i] = 0;
+        for (uint_fast8_t k = 0; k < n; k++) {
+            W[i][k] = 0;
+            const mh_real f = F[k];
+            if (f != 0) {
+                next.x[i] += f * root.x[k];
+                for (uint_fast8_t j = 0; j <= k; j++) {
+                    W[i][j] += f * row[j];
+                }
+            }
+            row += k + 1;
+        }
+        for (uint_fast8_t j = 0; j <= i; j++) {
+            mh_real sum = *Q++;
+            for (uint_fast8_t k = 0; k < n; k++) {
+                sum += W[i][k] * W[j][k];
+            }
+            *p++ = sum;
+        }
+        F += n;
+    }
+    status = mh_gaussian_settle(&next);
+    if (status == MH_OK) {
+        *gaussian = next;
+    }
+    return status;
+}
+
+void mh_covariance_predict(uint8_t n, mh_real *P, const mh_real *F, const mh_real *Q)
+{
+    mh_real before[MH_PACKED_SIZE(MH_STATES_MAX)];
+    memcpy(before, P, packed_size(n) * sizeof before[0]);
+    for (uint_fast8_t j = 0; j < n; j++) {
+        mh_real moved[MH_STATES_MAX]; /* P times row j of F */
+        for (uint_fast8_t k = 0; k < n; k++) {
+            moved[k] = 0;
+            for (uint_fast8_t m = 0; m < n; m++) {
+                moved[k] += before[mh_packed_index(k, m)] * F[j * n + m];
+            }
+        }
+        for (uint_fast8_t i = 0; i <= j; i++) {
+            mh_real sum = Q ? *Q++ : 0;
+            for (uint_fast8_t k = 0; k < n; k++) {
+                sum += F[i * n + k] * moved[k];
+            }
+            *P++ = sum;
+        }
+    }
+}
+
+enum mh_status mh_gaussian_reduction(const struct mh_gaussian *before, const struct mh_gaussian *after, mh_real *A)
+{
+    struct mh_gaussian_root root;
+    const uint8_t n = before->n;
+    if (after->n != n) {
+        return MH_ERR_ARGUMENT;
+    }
+    const enum mh_status status = mh_gaussian_factor(&root, before);
+    if (status != MH_OK) {
+        return status;
+    }
+    for (uint_fast8_t i = 0; i < n; i++) {
+        for (uint_fast8_t j = 0; j < n; j++) {
+            A[j] = after->P[mh_packed_index(i, j)];
+        }
+        mh_cholesky_solve(n, root.L, A);
+        A += n;
+    }
+    return MH_OK;
+}
+
+void mh_gaussian_root_take(struct mh_gaussian_root *root, const mh_real *c, mh_real innovation, mh_real variance)
+{
+    const uint8_t n = root->n;
+    mh_real gain[MH_STATES_MAX] = {0}; /* the sum of c_k times column k of L, k > j: P h in the end */
+    mh_real rest = variance;           /* and of their squares, and the noise */
+    for (uint_fast8_t j = n; j-- > 0;) {
+        if (c[j] == 0) {
+            continue;
+        }
+        const mh_real sum = rest + c[j] * c[j];
+        const mh_real scale = mh_sqrt(rest / sum);
+        const mh_real share = c[j] / (scale * sum);
+        mh_real *element = root->L + MH_PACKED(j, j);
+        for (uint_fast8_t i = j; i < n; i++) {
+            const mh_real old = *element;
+            *element = scale * old - share * gain[i];
+            gain[i] += c[j] * old;
+            element += i + 1;
+        }
+        rest = sum;
+    }
+    const mh_real step = innovation / rest;
+    for (uint_fast8_t i = 0; i < n; i++) {
+        root->x[i] += gain[i] * step;
+    }
+}
+
+enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh_gaussian_root *root)
+{
+    const uint8_t n = root->n;
+    mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)];
+    if (!all_finite(root->x, n)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    memcpy(P, root->L, packed_size(n) * sizeof P[0]);
+    mh_cholesky_multiply(n, P);
+    for (uint_fast8_t i = 0; i < n; i++) {
+        mh_real *variance = P + MH_PACKED(i, i);
+        const mh_real lost = MH_PIVOT_FLOOR * *variance - mh_squared(root->L[MH_PACKED(i, i)]);
+        if (!mh_finite(*variance)) {
+            return MH_ERR_NOT_FINITE;
+        }
+        if (*variance < SMALLEST) {
+            return MH_ERR_SINGULAR;
+        }
+        *variance += mh_max(lost, 0);
+    }
+    gaussian->n = n;
+    memcpy(gaussian->x, root->x, n * sizeof P[0]);
+    memcpy(gaussian->P, P, packed_size(n) * sizeof P[0]);
+    return MH_OK;
+}
