@@ -23,6 +23,9 @@
     X(FRAMES_SENT_HAND_OVERS, "frames_sent_hand_overs", c->frames_sent[MH_MESSAGE_HAND_OVER], "of these parts of tracks on their way to the next head")\
     X(FRAMES_SENT_ALERTS, "frames_sent_alerts", c->frames_sent[MH_MESSAGE_ALERT], "of these alerts that the target was found or lost")             \
     X(FRAMES_SENT_POSITIONS, "frames_sent_positions", c->frames_sent[MH_MESSAGE_POSITION], "of these positions on their way to the sink")          \
+    X(FRAMES_SENT_VICINITIES, "frames_sent_vicinities", c->frames_sent[MH_MESSAGE_VICINITY], "of these lists of neighbours, for neighbours")      \
+    X(FRAMES_SENT_TOKENS, "frames_sent_tokens", c->frames_sent[MH_MESSAGE_TOKEN], "of these messages about who has the token of a search")         \
+    X(FRAMES_SENT_LEAKS, "frames_sent_leaks", c->frames_sent[MH_MESSAGE_LEAK], "of these leaks found, on their way to the sink")                    \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
     X(FRAMES_DUPLICATE, "frames_duplicate", c->frames_duplicate, "receptions of a frame that the mote had before; its radio keeps them to itself")  \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \

@@ -44,11 +44,13 @@ enum energy_cause account_cause(enum mh_message_kind kind)
     switch (kind) {
     case MH_MESSAGE_REPORT:
     case MH_MESSAGE_POSITION:
+    case MH_MESSAGE_LEAK:
         return ENERGY_REPORTING;
     case MH_MESSAGE_FORM:
     case MH_MESSAGE_JOIN:
     case MH_MESSAGE_HAND_OVER:
     case MH_MESSAGE_ALERT:
+    case MH_MESSAGE_TOKEN:
         return ENERGY_CLUSTERING;
     case MH_MESSAGE_REQUEST:
     case MH_MESSAGE_ASK:
@@ -59,6 +61,7 @@ enum energy_cause account_cause(enum mh_message_kind kind)
     case MH_MESSAGE_BEACON:
     case MH_MESSAGE_HELLO:
     case MH_MESSAGE_LANDMARK:
+    case MH_MESSAGE_VICINITY:
     case MH_MESSAGE_KINDS:
         return ENERGY_ROUTING;
     }

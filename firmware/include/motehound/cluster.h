@@ -49,6 +49,7 @@
 #include "motehound/followed.h"
 #include "motehound/link.h"
 #include "motehound/neighbours.h"
+#include "motehound/parcel.h"
 #include "motehound/rendezvous.h"
 
 #define MH_CLUSTER_START 4500      /* ticks */
@@ -171,12 +172,7 @@ struct mh_cluster_node {
 
     /* who is to be head */
     struct {
-        bool begun;
-        mh_node_id from, track;
-        int32_t generation;
-        uint8_t parts;
-        uint32_t came; /* bit k: part k */
-        uint16_t length;
+        struct mh_parcel parcel;
         uint8_t bytes[MH_CLUSTER_CARRIED_MAX];
     } incoming;
 

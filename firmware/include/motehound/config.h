@@ -120,6 +120,16 @@
 #endif
 #endif
 
+/* Nodes within two hops that a node of the protocol `token` knows the places of, itself among them: 16 bytes each, 14 on an AVR. With fewer the next head
+ * of a search is chosen as if those farthest off did not measure. */
+#ifndef MH_VICINITY_MAX
+#ifdef __AVR__
+#define MH_VICINITY_MAX 24
+#else
+#define MH_VICINITY_MAX 96
+#endif
+#endif
+
 /* Messages that wait at a node to be sent to a neighbour, some 140 bytes each, and messages it remembers having taken, so that it takes
  * none twice, 16 bytes each. */
 #ifndef MH_LINK_QUEUE_MAX
@@ -232,6 +242,9 @@
 #if MH_NEIGHBOURS_MAX < 4 || MH_NEIGHBOURS_MAX > 250
 #error                                                                                                                 \
     "MH_NEIGHBOURS_MAX must be 4 to 250: a Gabriel graph has four neighbours on average, and the table is searched linearly"
+#endif
+#if MH_VICINITY_MAX < 4 || MH_VICINITY_MAX > 250
+#error "MH_VICINITY_MAX must be 4 to 250: a head needs a few neighbours, and the table is searched linearly"
 #endif
 #if MH_LINK_QUEUE_MAX < 1 || MH_LINK_QUEUE_MAX > 100 || MH_LINK_SEEN_MAX < 1 || MH_LINK_SEEN_MAX > 250
 #error "MH_LINK_QUEUE_MAX must be 1 to 100, MH_LINK_SEEN_MAX 1 to 250: both are searched linearly"

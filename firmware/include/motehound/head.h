@@ -15,6 +15,8 @@ struct mh_head_config {
     /* A measurement taken this much before or after an instant, below interval / 2, is taken for one of the instant, its time set to it: where
      * each mote samples by its own idea of the network's time. 0: times are exact. */
     mh_tick tolerance;
+    bool
+        own_first; /* a head's own measurements come before the others of their time: for trackers that take them one by one */
 };
 
 struct mh_head_counters {
@@ -28,8 +30,9 @@ struct mh_head_counters {
 
 struct mh_head {
     const struct mh_head_config *config;
-    struct mh_measurement measurements[MH_REPORTS_MAX]; /* by time, then node, then target */
+    struct mh_measurement measurements[MH_REPORTS_MAX]; /* by time, then node, own first if wanted, then target */
     uint16_t count;
+    mh_node_id own;  /* this node; set by who runs the head, after init, where own_first */
     mh_tick instant; /* the sampling instant being gathered */
     bool tracking;   /* a track exists: the tracker can predict, whether or not the last instant gave a position */
     struct mh_head_counters counters;

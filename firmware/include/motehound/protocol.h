@@ -40,11 +40,25 @@ struct mh_cluster_counters {
     uint32_t answered;   /* of these such that measured the target */
 };
 
+/* What one node or many did in searches that walk from head to head (token.h). */
+struct mh_search_counters {
+    uint32_t begun;
+    uint32_t restarted;            /* by the sink, which had heard nothing */
+    uint32_t heads;                /* instants that somebody led */
+    uint32_t handed;               /* tokens taken by the next head */
+    uint32_t refused;              /* times that a node did not take one */
+    uint32_t resumed;              /* times that a head fell silent, and the one before led again */
+    uint32_t yielded;              /* times that a head gave way to another */
+    uint32_t corrupt;              /* messages with absurd content, not used */
+    uint32_t converged, exhausted; /* searches that were over */
+};
+
 /* What happened to the messages of one node or of many. */
 struct mh_protocol_counters {
     uint32_t lost[MH_LOSSES];
     uint32_t retries; /* messages sent once more, beside what the radio does on its own */
     struct mh_cluster_counters clusters;
+    struct mh_search_counters searches;
 };
 
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */
@@ -79,6 +93,10 @@ struct mh_protocol_port {
     enum mh_status (*save)(void *context, uint8_t *track, size_t *length);
     enum mh_status (*expect)(void *context, mh_tick time, struct mh_estimate *estimate);
     void (*restart)(void *context);
+    /* How good a next head `candidate` would be, at places[0], with neighbours at places[1 .. count), as the tracker scores it. Errors: MH_NONE (no track, or
+     * it does not matter to the tracker). */
+    enum mh_status (*score)(void *context, mh_node_id candidate, const struct mh_place *places, size_t count,
+                            mh_real *score);
     /* This mote, which need not compute, knows where the target is: to its owner. */
     void (*tell)(void *context, const struct mh_estimate *estimate);
 };

@@ -20,10 +20,13 @@
 #include "mh_hello_t.h"
 #include "mh_join_t.h"
 #include "mh_landmark_t.h"
+#include "mh_leak_t.h"
 #include "mh_position_t.h"
 #include "mh_report_t.h"
 #include "mh_request_t.h"
 #include "mh_sync_t.h"
+#include "mh_token_t.h"
+#include "mh_vicinity_t.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -32,6 +35,7 @@
 
 #define MH_FORM_MEMBERS 16    /* that a form_t names */
 #define MH_HAND_OVER_BYTES 64 /* of a track in a hand_over_t */
+#define MH_VICINITY_NODES 8   /* that a vicinity_t tells of */
 
 enum mh_message_kind {
     MH_MESSAGE_BEACON,
@@ -47,8 +51,14 @@ enum mh_message_kind {
     MH_MESSAGE_HAND_OVER,
     MH_MESSAGE_ALERT,
     MH_MESSAGE_POSITION,
+    MH_MESSAGE_VICINITY,
+    MH_MESSAGE_TOKEN,
+    MH_MESSAGE_LEAK,
     MH_MESSAGE_KINDS
 };
+
+/* How a search stands, in token_t and leak_t (token.h). */
+enum mh_search { MH_SEARCH_GOES_ON, MH_SEARCH_CONVERGED, MH_SEARCH_EXHAUSTED };
 
 enum mh_envelope_kind { MH_ENVELOPE_NONE, MH_ENVELOPE_ROUTE, MH_ENVELOPE_FACE, MH_ENVELOPE_KINDS };
 
@@ -68,6 +78,9 @@ struct mh_message {
         mh_hand_over_t hand_over;
         mh_alert_t alert;
         mh_position_t position;
+        mh_vicinity_t vicinity;
+        mh_token_t token;
+        mh_leak_t leak;
     } as;
     enum mh_envelope_kind envelope;
     mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */
@@ -88,7 +101,7 @@ struct mh_wire_type {
 
 extern const struct mh_wire_type mh_wire_beacon, mh_wire_report, mh_wire_request, mh_wire_hello, mh_wire_landmark,
     mh_wire_sync, mh_wire_ask, mh_wire_answer, mh_wire_form, mh_wire_join, mh_wire_hand_over, mh_wire_alert,
-    mh_wire_position, mh_wire_route, mh_wire_face;
+    mh_wire_position, mh_wire_vicinity, mh_wire_token, mh_wire_leak, mh_wire_route, mh_wire_face;
 
 /* What somebody speaks: types in any order, then NULL. */
 typedef const struct mh_wire_type *const mh_wire_types;
@@ -97,7 +110,7 @@ typedef const struct mh_wire_type *const mh_wire_types;
 extern mh_wire_types mh_wire_all[];
 
 /* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes, which are written whatever is returned. Errors: MH_ERR_ARGUMENT
- * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t and hand_over_t do not go in a face_t). */
+ * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t and hand_over_t do not go in a face_t, vicinity_t in none). */
 enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *message, uint8_t *frame, size_t *length);
 
 /* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields

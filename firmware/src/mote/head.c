@@ -3,24 +3,27 @@
 #include <string.h>
 
 /* The order the tracker is promised: -1, 0 or 1 as a comes before, with or after b. */
-static int order(const struct mh_measurement *a, const struct mh_measurement *b)
+static int order(const struct mh_head *head, const struct mh_measurement *a, const struct mh_measurement *b)
 {
     if (a->time != b->time) {
         return mh_tick_before(a->time, b->time) ? -1 : 1;
     }
     if (a->node != b->node) {
-        return a->node < b->node ? -1 : 1;
+        const bool own_first = head->config->own_first;
+        const bool a_first = own_first && a->node == head->own;
+        const bool b_first = own_first && b->node == head->own;
+        return a_first || (!b_first && a->node < b->node) ? -1 : 1;
     }
     return (a->target > b->target) - (a->target < b->target);
 }
 
 /* The order in which measurements give way when the table is full. */
-static bool gives_way_before(const struct mh_measurement *a, const struct mh_measurement *b)
+static bool gives_way_before(const struct mh_head *head, const struct mh_measurement *a, const struct mh_measurement *b)
 {
     if (a->increment != b->increment) {
         return a->increment < b->increment;
     }
-    return a->node != b->node ? a->node > b->node : order(a, b) > 0;
+    return a->node != b->node ? a->node > b->node : order(head, a, b) > 0;
 }
 
 static bool is_of_next(const struct mh_head *head, const struct mh_measurement *measurement)
@@ -31,7 +34,7 @@ static bool is_of_next(const struct mh_head *head, const struct mh_measurement *
 static void insert(struct mh_head *head, const struct mh_measurement *measurement)
 {
     uint16_t at = head->count++;
-    for (; at > 0 && order(measurement, &head->measurements[at - 1]) < 0; at--) {
+    for (; at > 0 && order(head, measurement, &head->measurements[at - 1]) < 0; at--) {
         head->measurements[at] = head->measurements[at - 1];
     }
     head->measurements[at] = *measurement;
@@ -57,6 +60,7 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
         return status;
     }
     head->config = config;
+    head->own = 0;
     head->count = 0; /* the table stays as it is: it is large, and where heads take turns most motes never need it */
     head->tracking = false;
     head->counters = (struct mh_head_counters){0};
@@ -101,7 +105,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
             head->counters.repeated++;
             return MH_ERR_REPEATED;
         }
-        if (gives_way_before(kept, &head->measurements[least])) {
+        if (gives_way_before(head, kept, &head->measurements[least])) {
             least = i;
         }
     }
@@ -111,7 +115,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
         return MH_OK;
     }
     head->counters.overflowed++;
-    if (gives_way_before(&head->measurements[least], measurement)) {
+    if (gives_way_before(head, &head->measurements[least], measurement)) {
         remove_at(head, least);
         insert(head, measurement);
     }

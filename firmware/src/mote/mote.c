@@ -23,6 +23,15 @@ static mh_tick own_time(const struct mh_mote *mote, mh_tick network)
     return mote->config->clock ? mote->config->clock->local(mote->config->clock_state, network) : network;
 }
 
+/* Gather from the first instant at or after `now`, the mote's own time. */
+static enum mh_status begin_head(const struct mh_mote *mote, mh_tick now)
+{
+    struct mh_head *head = mote->config->head_state;
+    const enum mh_status status = mh_head_init(head, mote->config->head, network_time(mote, now));
+    head->own = mote->node.id;
+    return status;
+}
+
 /* ---- the alarm ---- */
 
 struct earliest {
@@ -231,6 +240,7 @@ static enum mh_status protocol_lead(void *context, mh_tick now, const uint8_t *t
     }
     const struct mh_head_counters counters = head->counters;
     enum mh_status status = mh_head_init(head, config, network_time(mote, now) + 1);
+    head->own = mote->node.id;
     head->counters = counters;
     if (status == MH_OK && length > 0) {
         status = config->tracker->load(config->tracker_state, track, length);
@@ -268,6 +278,15 @@ static void protocol_restart(void *context)
     }
 }
 
+static enum mh_status protocol_score(void *context, mh_node_id candidate, const struct mh_place *places, size_t count,
+                                     mh_real *score)
+{
+    const struct mh_mote *mote = context;
+    return mote->leads && mote->config->head->tracker->score
+               ? mote->config->head->tracker->score(mote->config->head->tracker_state, candidate, places, count, score)
+               : MH_NONE;
+}
+
 static void protocol_tell(void *context, const struct mh_estimate *estimate)
 {
     const struct mh_mote *mote = context;
@@ -291,6 +310,7 @@ static const struct mh_protocol_port protocol_port = {
     .save = protocol_save,
     .expect = protocol_expect,
     .restart = protocol_restart,
+    .score = protocol_score,
     .tell = protocol_tell,
 };
 
@@ -320,7 +340,7 @@ enum mh_status mh_mote_init(struct mh_mote *mote, const struct mh_mote_config *c
         status = mh_sensor_init(&mote->sensor, config->sensor);
     }
     if (status == MH_OK && config->head) {
-        status = mh_head_init(config->head_state, config->head, network_time(mote, now));
+        status = begin_head(mote, now);
     }
     if (status == MH_OK) {
         status = config->protocol->init(config->protocol_state, config->protocol_config, &mote->node);
@@ -373,7 +393,7 @@ static void time_jumped(struct mh_mote *mote, mh_tick now)
         (void)mh_sensor_init(&mote->sensor, config->sensor);
     }
     if (mote->leads && !config->protocol->in_turns) {
-        (void)mh_head_init(config->head_state, config->head, network_time(mote, now));
+        (void)begin_head(mote, now);
         if (mote->tracking) {
             mote->tracking = false;
             config->protocol->tell_tracking(protocol_state(mote), now, false);

@@ -336,7 +336,7 @@ static void time_jumped(void *state, mh_tick now)
         c->role = MH_CLUSTER_SLEEPER;
     }
     c->set = 0;
-    c->knows = c->asked = c->handing = c->listening = c->incoming.begun = false;
+    c->knows = c->asked = c->handing = c->listening = c->incoming.parcel.begun = false;
     c->answer_ahead = c->shunned_count = c->shunned_next = 0;
     c->followed.known = false;
     if (c->node->port->network(c->node->context, now, &c->time)) {

@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#define PARTS_MAX ((MH_CLUSTER_CARRIED_MAX + MH_HAND_OVER_BYTES - 1) / MH_HAND_OVER_BYTES)
 #define MISSES_MAX 2 /* instants without an answer: the first asked members only, the second everyone */
 
 static mh_tick interval_of(const struct mh_cluster_node *c) { return c->config->election.interval; }
@@ -311,18 +310,14 @@ static bool offer(struct mh_cluster_node *c)
 {
     uint8_t bytes[MH_CLUSTER_CARRIED_MAX];
     const size_t length = pack(c, bytes);
-    const uint8_t parts = (uint8_t)((length + MH_HAND_OVER_BYTES - 1) / MH_HAND_OVER_BYTES);
+    const uint8_t parts = (uint8_t)MH_PARCEL_PARTS(length);
     c->next_generation = (int32_t)((uint32_t)c->next_generation + 1);
     for (uint8_t part = 0; part < parts; part++) {
         struct mh_message message = {.kind = MH_MESSAGE_HAND_OVER,
                                      .as.hand_over = {.track = (int32_t)c->of.track,
                                                       .generation = c->next_generation,
-                                                      .time_ms = (int32_t)c->of.heard,
-                                                      .part = part,
-                                                      .parts = parts}};
-        const size_t from = (size_t)part * MH_HAND_OVER_BYTES, left = length - from;
-        message.as.hand_over.length = (uint8_t)(left < MH_HAND_OVER_BYTES ? left : MH_HAND_OVER_BYTES);
-        memcpy(message.as.hand_over.data, bytes + from, message.as.hand_over.length);
+                                                      .time_ms = (int32_t)c->of.heard}};
+        mh_parcel_cut(bytes, length, part, &message.as.hand_over);
         mh_geographic_address(&message, c->node->id, mh_cluster_number(c), c->next.head.id, &c->next.head.place);
         if (mh_link_take(&c->link, &message) != MH_OK) {
             return false;
@@ -439,16 +434,16 @@ static bool locate(struct mh_cluster_node *c, mh_tick time, const struct mh_plac
 static void take_track(struct mh_cluster_node *c, const mh_hand_over_t *last)
 {
     const uint8_t *bytes = c->incoming.bytes;
-    const size_t length = c->incoming.length, members = 1 + 4 * (size_t)bytes[0];
+    const size_t length = c->incoming.parcel.length, members = 1 + 4 * (size_t)bytes[0];
     struct mh_cluster_of of = c->of;
-    if (!c->knows || of.track != c->incoming.track) {
+    if (!c->knows || of.track != c->incoming.parcel.track) {
         of.time = (mh_tick)last->time_ms;
         of.x_mm = c->node->place.x_mm;
         of.y_mm = c->node->place.y_mm;
         of.vx_mmps = of.vy_mmps = 0;
     }
-    of.track = c->incoming.track;
-    of.generation = c->incoming.generation;
+    of.track = c->incoming.parcel.track;
+    of.generation = c->incoming.parcel.generation;
     of.heard = (mh_tick)last->time_ms;
     if (bytes[0] > MH_FORM_MEMBERS || members > length || !mh_cluster_lead(c, &of, bytes + members, length - members)) {
         return;
@@ -466,32 +461,13 @@ static void take_track(struct mh_cluster_node *c, const mh_hand_over_t *last)
 void mh_cluster_hear_part(struct mh_cluster_node *c, mh_node_id from, const mh_hand_over_t *part)
 {
     const int32_t age = mh_ticks_between((mh_tick)part->time_ms, c->time), limit = 2 * (int32_t)interval_of(c);
-    const size_t begin = (size_t)part->part * MH_HAND_OVER_BYTES;
-    const bool is_last = part->part + 1 == part->parts;
     const struct mh_cluster_of offered = {
         .track = (mh_node_id)part->track, .generation = part->generation, .head = c->node->id};
-    if (!c->node->is_head || c->role == MH_CLUSTER_SINK || age < 0 || age > limit || part->parts > PARTS_MAX ||
-        (!is_last && part->length != MH_HAND_OVER_BYTES) || begin + part->length > sizeof c->incoming.bytes ||
+    if (!c->node->is_head || c->role == MH_CLUSTER_SINK || age < 0 || age > limit ||
         (c->knows && c->of.track == offered.track && !mh_cluster_outranks(&offered, &c->of))) {
         return;
     }
-    if (!c->incoming.begun || c->incoming.from != from || c->incoming.track != offered.track ||
-        c->incoming.generation != offered.generation || c->incoming.parts != part->parts) {
-        c->incoming.begun = true;
-        c->incoming.from = from;
-        c->incoming.track = offered.track;
-        c->incoming.generation = offered.generation;
-        c->incoming.parts = part->parts;
-        c->incoming.came = 0;
-        c->incoming.length = 0;
-    }
-    memcpy(c->incoming.bytes + begin, part->data, part->length);
-    c->incoming.came |= (uint32_t)1 << part->part;
-    if (is_last) {
-        c->incoming.length = (uint16_t)(begin + part->length);
-    }
-    if (c->incoming.length > 0 && c->incoming.came == ((uint32_t)1 << part->parts) - 1) {
-        c->incoming.begun = false;
+    if (mh_parcel_join(&c->incoming.parcel, c->incoming.bytes, sizeof c->incoming.bytes, from, part) == MH_OK) {
         take_track(c, part);
     }
 }

@@ -1,5 +1,6 @@
 /* lcm-gen's T_encode and T_decode keep the type's fingerprint in a static variable. Its functions one level below, which the
  * generated code itself uses for nested types, touch nothing but their arguments. */
+#include "motehound/bytes.h"
 #include "motehound/wire.h"
 
 #include <stdbool.h>
@@ -75,6 +76,36 @@ static bool position_sound(const mh_position_t *position)
            valid(position->vx_mmps, position->vy_mmps);
 }
 
+static bool vicinity_sound(const mh_vicinity_t *vicinity)
+{
+    bool sound = vicinity->sender != -1 && vicinity->count <= MH_VICINITY_NODES;
+    for (uint8_t i = 0; sound && i < MH_VICINITY_NODES; i++) {
+        const bool told = i < vicinity->count, at_zero = vicinity->x_mm[i] == 0 && vicinity->y_mm[i] == 0;
+        sound = (vicinity->id[i] != -1) == told && (told || at_zero) && valid(vicinity->x_mm[i], vicinity->y_mm[i]);
+    }
+    return sound;
+}
+
+static bool token_sound(const mh_token_t *token)
+{
+    return token->sender != -1 && token->track != -1 && token->state <= MH_SEARCH_EXHAUSTED;
+}
+
+static bool finite_reals(const uint8_t *bytes, uint8_t count)
+{
+    bool finite = true;
+    for (uint8_t i = 0; finite && i < count; i++) {
+        finite = mh_finite(mh_get_real(&bytes));
+    }
+    return finite;
+}
+
+static bool leak_sound(const mh_leak_t *leak)
+{
+    return leak->track != -1 && valid(leak->head_x_mm, leak->head_y_mm) && valid(leak->x_mm, leak->y_mm) &&
+           finite_reals(leak->rate, 1) && finite_reals(leak->spread, 6) && leak->state <= MH_SEARCH_EXHAUSTED;
+}
+
 static bool route_sound(const mh_route_t *route)
 {
     return route->sender != -1 && route->origin != -1 && route->hops >= 0 && route->hops <= MH_ROUTE_HOPS_MAX &&
@@ -113,10 +144,28 @@ TYPE(join, MH_MESSAGE_JOIN, MH_ENVELOPE_NONE, as.join);
 TYPE(hand_over, MH_MESSAGE_HAND_OVER, MH_ENVELOPE_NONE, as.hand_over);
 TYPE(alert, MH_MESSAGE_ALERT, MH_ENVELOPE_NONE, as.alert);
 TYPE(position, MH_MESSAGE_POSITION, MH_ENVELOPE_NONE, as.position);
+TYPE(vicinity, MH_MESSAGE_VICINITY, MH_ENVELOPE_NONE, as.vicinity);
+TYPE(token, MH_MESSAGE_TOKEN, MH_ENVELOPE_NONE, as.token);
+TYPE(leak, MH_MESSAGE_LEAK, MH_ENVELOPE_NONE, as.leak);
 TYPE(route, MH_MESSAGE_KINDS, MH_ENVELOPE_ROUTE, header.route);
 TYPE(face, MH_MESSAGE_KINDS, MH_ENVELOPE_FACE, header);
 
-mh_wire_types mh_wire_all[] = {&mh_wire_beacon,   &mh_wire_report, &mh_wire_request,   &mh_wire_hello,
-                               &mh_wire_landmark, &mh_wire_sync,   &mh_wire_ask,       &mh_wire_answer,
-                               &mh_wire_form,     &mh_wire_join,   &mh_wire_hand_over, &mh_wire_alert,
-                               &mh_wire_position, &mh_wire_route,  &mh_wire_face,      NULL};
+mh_wire_types mh_wire_all[] = {&mh_wire_beacon,
+                               &mh_wire_report,
+                               &mh_wire_request,
+                               &mh_wire_hello,
+                               &mh_wire_landmark,
+                               &mh_wire_sync,
+                               &mh_wire_ask,
+                               &mh_wire_answer,
+                               &mh_wire_form,
+                               &mh_wire_join,
+                               &mh_wire_hand_over,
+                               &mh_wire_alert,
+                               &mh_wire_position,
+                               &mh_wire_vicinity,
+                               &mh_wire_token,
+                               &mh_wire_leak,
+                               &mh_wire_route,
+                               &mh_wire_face,
+                               NULL};

@@ -66,7 +66,7 @@ static struct mh_estimate estimate;
 
 void setUp(void)
 {
-    const struct mh_head_config plain = {&tracker, "", &seen, 0, T, WINDOW, 0};
+    const struct mh_head_config plain = {&tracker, "", &seen, 0, T, WINDOW, 0, false};
     config = plain;
     memset(&seen, 0, sizeof seen);
     TEST_ASSERT_EQUAL(MH_OK, mh_head_init(&head, &config, 5 * T));

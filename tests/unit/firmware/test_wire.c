@@ -114,6 +114,38 @@ static struct mh_message example(enum mh_message_kind kind)
         message.as.position = position;
         break;
     }
+    case MH_MESSAGE_VICINITY: {
+        mh_vicinity_t vicinity = {.sender = 1, .count = MH_VICINITY_NODES - 1};
+        for (uint8_t i = 0; i < MH_VICINITY_NODES; i++) {
+            const bool told = i < vicinity.count;
+            vicinity.id[i] = told ? 10 + i : -1;
+            vicinity.x_mm[i] = told ? -1000000000 + i : 0;
+            vicinity.y_mm[i] = told ? 1000000000 - i : 0;
+        }
+        message.as.vicinity = vicinity;
+        break;
+    }
+    case MH_MESSAGE_TOKEN: {
+        const mh_token_t token = {
+            .sender = 1, .track = 2, .generation = -3, .holder = -1, .state = MH_SEARCH_EXHAUSTED};
+        message.as.token = token;
+        break;
+    }
+    case MH_MESSAGE_LEAK: {
+        const mh_leak_t leak = {.track = 1,
+                                .generation = 2,
+                                .time_ms = -3,
+                                .head_x_mm = 4,
+                                .head_y_mm = -5,
+                                .x_mm = 6,
+                                .y_mm = -7,
+                                .rate = {0x41, 0xF0},
+                                .spread = {[20] = 0x3F, [21] = 0x80},
+                                .heads = 250,
+                                .state = MH_SEARCH_CONVERGED};
+        message.as.leak = leak;
+        break;
+    }
     default: {
         const mh_request_t request = {.sender = 1,
                                       .origin = 2,
@@ -152,10 +184,19 @@ static struct mh_message enveloped(enum mh_message_kind kind, enum mh_envelope_k
     return message;
 }
 
-/* A form_t or a hand_over_t and a face_t are longer than a frame together. */
+/* A form_t or a hand_over_t and a face_t are longer than a frame together; a vicinity_t and any envelope. */
 static bool fits(enum mh_message_kind kind, int envelope)
 {
-    return envelope != MH_ENVELOPE_FACE || (kind != MH_MESSAGE_FORM && kind != MH_MESSAGE_HAND_OVER);
+    return kind == MH_MESSAGE_VICINITY
+               ? envelope == MH_ENVELOPE_NONE
+               : envelope != MH_ENVELOPE_FACE || (kind != MH_MESSAGE_FORM && kind != MH_MESSAGE_HAND_OVER);
+}
+
+/* The last of the envelopes, up to `most`, that the kind fits in. */
+static enum mh_envelope_kind within(enum mh_message_kind kind, int most)
+{
+    for (; !fits(kind, most); most--) {}
+    return (enum mh_envelope_kind)most;
 }
 
 static void encode(const struct mh_message *message)
@@ -247,6 +288,10 @@ static void an_envelope_travels_before_every_kind(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
         const struct mh_message route = enveloped(kind, MH_ENVELOPE_ROUTE), face = enveloped(kind, MH_ENVELOPE_FACE);
+        if (!fits(kind, MH_ENVELOPE_ROUTE)) {
+            TEST_ASSERT_EQUAL(MH_ERR_CAPACITY, mh_wire_encode(mh_wire_all, &route, frame, &length));
+            continue;
+        }
         encode(&route);
         TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
         TEST_ASSERT_EQUAL(kind, decoded.kind);
@@ -269,8 +314,7 @@ static void an_envelope_travels_before_every_kind(void)
 static void every_single_bit_counts(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_BEACON; kind < MH_MESSAGE_KINDS; kind++) {
-        const struct mh_message message =
-            enveloped(kind, fits(kind, MH_ENVELOPE_FACE) ? MH_ENVELOPE_FACE : MH_ENVELOPE_ROUTE);
+        const struct mh_message message = enveloped(kind, within(kind, MH_ENVELOPE_FACE));
         encode(&message);
         for (size_t bit = 0; bit < 8 * length; bit++) {
             frame[bit / 8] = (uint8_t)(frame[bit / 8] ^ 1u << bit % 8);
@@ -402,9 +446,42 @@ static void fields_of_clusters_that_nobody_writes_are_corrupt(void)
     expect_corrupt(&bad);
 }
 
+static void fields_of_a_search_that_nobody_writes_are_corrupt(void)
+{
+    struct mh_message bad = example(MH_MESSAGE_VICINITY);
+    bad.as.vicinity.count = MH_VICINITY_NODES + 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_VICINITY);
+    bad.as.vicinity.count--; /* one more behind the end */
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_VICINITY);
+    bad.as.vicinity.x_mm[MH_VICINITY_NODES - 1] = 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_VICINITY);
+    bad.as.vicinity.y_mm[0] = INT32_MIN;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_TOKEN);
+    bad.as.token.state = MH_SEARCH_EXHAUSTED + 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_TOKEN);
+    bad.as.token.sender = -1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_LEAK);
+    bad.as.leak.head_y_mm = 1000000001;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_LEAK);
+    bad.as.leak.rate[0] = 0x7F; /* infinity */
+    bad.as.leak.rate[1] = 0x80;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_LEAK);
+    bad.as.leak.spread[20] = 0xFF; /* no number */
+    bad.as.leak.spread[21] = 0xFF;
+    expect_corrupt(&bad);
+}
+
 static void what_clusters_say_makes_the_round_trip(void)
 {
-    for (enum mh_message_kind kind = MH_MESSAGE_ASK; kind <= MH_MESSAGE_POSITION; kind++) {
+    for (enum mh_message_kind kind = MH_MESSAGE_ASK; kind < MH_MESSAGE_KINDS; kind++) {
         const struct mh_message message = example(kind);
         encode(&message);
         TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
@@ -415,6 +492,9 @@ static void what_clusters_say_makes_the_round_trip(void)
         TEST_ASSERT_EQUAL_MEMORY(frame, again, length);
         TEST_ASSERT_EQUAL_MEMORY(&message.as.join, &decoded.as.join, sizeof message.as.join); /* three numbers first */
     }
+    const struct mh_message position = example(MH_MESSAGE_POSITION);
+    encode(&position);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_decode(mh_wire_all, frame, length, &decoded));
     TEST_ASSERT_EQUAL_INT32(1000000000, decoded.as.position.vx_mmps);
     const struct mh_message form = example(MH_MESSAGE_FORM);
     encode(&form);
@@ -532,8 +612,7 @@ static void any_bytes_are_safe(void)
         const int kind = (int)(trial % MH_MESSAGE_KINDS),
                   envelope = (int)(trial / MH_MESSAGE_KINDS % MH_ENVELOPE_KINDS);
         const struct mh_message message =
-            enveloped((enum mh_message_kind)kind,
-                      fits((enum mh_message_kind)kind, envelope) ? (enum mh_envelope_kind)envelope : MH_ENVELOPE_ROUTE);
+            enveloped((enum mh_message_kind)kind, within((enum mh_message_kind)kind, envelope));
         encode(&message);
         for (size_t i = 8; i < length - 2; i++) {
             random = random * 1664525u + 1013904223u;
@@ -566,6 +645,7 @@ int main(void)
     RUN_TEST(an_unknown_type_is_told_apart);
     RUN_TEST(fields_that_nobody_writes_are_corrupt);
     RUN_TEST(fields_of_clusters_that_nobody_writes_are_corrupt);
+    RUN_TEST(fields_of_a_search_that_nobody_writes_are_corrupt);
     RUN_TEST(what_clusters_say_makes_the_round_trip);
     RUN_TEST(envelopes_that_nobody_writes_are_corrupt);
     RUN_TEST(unknown_kinds_are_not_encoded);
