@@ -17,7 +17,7 @@ static struct mh_luo track;
 static struct mh_head gathering;
 static struct mh_direct route;
 static const struct mh_direct_config routing = {10000, false};
-static const struct mh_head_config head = {&mh_tracker_luo, &tracking, &track, 0, INTERVAL, 500, 0, false};
+static const struct mh_head_config head = {&mh_tracker_luo, &tracking, &track, 0, INTERVAL, 500, 0, false, 0};
 static const struct mh_mote_config config = {.id = 1,
                                              .head = &head,
                                              .protocol = &mh_protocol_direct,

@@ -234,7 +234,7 @@ static void deploy(unsigned count, uint32_t side_mm, unsigned seed, unsigned los
     net.sensor.interval = 1000;
     net.sensor.threshold = MH_Q20(0.2f);
     static void *tracker_state;
-    const struct mh_head_config head = {&tracker, &net.script, &tracker_state, begin, 1000, 500, 0, false};
+    const struct mh_head_config head = {&tracker, &net.script, &tracker_state, begin, 1000, 500, 0, false, 0};
     net.head_config = head;
     for (unsigned i = 0; i < count; i++) {
         net.places[i].x_mm = i == SINK ? (int32_t)side_mm / 2 : (int32_t)draw(side_mm);

@@ -146,7 +146,7 @@ static void run(const struct mh_protocol *protocol, const void *protocol_config,
     const struct mh_sensor_config sensor = {
         .q20_per_count = 1000, .counts_min = INT32_MIN, .counts_max = INT32_MAX, .interval = 1000, .threshold = 5000};
     mh_tick now = (mh_tick)0 - 100000;
-    const struct mh_head_config head_config = {&tracker, "", &last, now, 1000, 500, 0, false};
+    const struct mh_head_config head_config = {&tracker, "", &last, now, 1000, 500, 0, false, 0};
     struct mh_mote_config configs[MOTES];
     random_state = seed;
     last = now - 1000;

@@ -2,8 +2,7 @@
  * order; for the heads of clusters whose tracks a fusion centre joins (centre.h), or for one head that hears all.
  *
  * - State (x, vx, y, vy), relative to config.origin. At config.start it is config.mean with config.covariance; heads and centre all know that.
- * - Motion: white_acceleration.h, from one instant with samples to the next. What is left over after whole ticks, r < T, counts as a tick of r whose variance is
- *   larger by T / r, so that the velocity's variance grows with time whatever the instants are.
+ * - Motion: white_acceleration.h, from one instant with samples to the next.
  * - All samples of one instant go into one update, MH_STACKED_MAX at most at once, at the state predicted to when they were taken: `cv_ukf` with sigma points drawn
  *   anew (Xu, Eqs. (17)-(28)), `cv_ekf` with all gradients at the predicted state.
  * - Reordering: a sample may come up to config.lag after the last step. Those not older than that are kept (MH_CV_SAMPLES_MAX), and the state before them; if one comes
@@ -17,8 +16,8 @@
  *
  * Summaries (summary.h), by config.summary:
  * - PLAIN: the track predicted to the time.
- * - SPLIT: P = Pd + Pi. Pd, the prior and the process noise, which other heads share, begins as the start covariance and follows Pd <- A (F Pd F' + Q) A'; Pi, the noise of
- *   the own samples, begins at 0 and follows Pi <- A F Pi F' A' + K R K'; A = I - K H, of the UKF with H = Pxz' P^-1.
+ * - SPLIT: P = Pd + Pi. Pd, what comes from the prior and the process noise, which other heads share, begins as the start covariance and follows
+ *   Pd <- A (F Pd F' + Q) A', A = I - K H, of the UKF with H = Pxz' P^-1; Pi = P - Pd comes from the noise of the own samples.
  * - INCREMENT: what the track knows more than its reference, predicted to the same time. The reference is at first the start, and then the track as it was told in the last
  *   summary, when summary_taken() says that the centre has that. A head that begins after config.start says so by `since`.
  *
@@ -87,7 +86,6 @@ struct mh_cv_track {
     mh_tick time;
     struct mh_gaussian state;
     mh_real shared[MH_PACKED_SIZE(MH_CV_STATES)]; /* Pd, with SPLIT */
-    mh_real own[MH_PACKED_SIZE(MH_CV_STATES)];    /* Pi */
 };
 
 struct mh_cv_sample {
@@ -106,8 +104,8 @@ struct mh_cv {
     mh_tick interval;
     mh_tick time;                                   /* of the last step */
     bool stepped;                                   /* `time` is set */
-    bool lost;                                      /* `latest` is not what the kept samples say */
-    struct mh_cv_track settled;                     /* no sample at or before its time is taken any more */
+    mh_tick horizon;                                /* samples at or before it are too late */
+    struct mh_cv_track settled;                     /* before all kept samples */
     struct mh_cv_track latest;                      /* after the first `filtered` of the kept samples */
     struct mh_cv_sample samples[MH_CV_SAMPLES_MAX]; /* by time, node and target */
     uint16_t count, filtered;

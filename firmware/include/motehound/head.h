@@ -17,11 +17,14 @@ struct mh_head_config {
     mh_tick tolerance;
     bool
         own_first; /* a head's own measurements come before the others of their time: for trackers that take them one by one */
+    /* Measurements of instants closed at most this long ago are handed to the tracker at the next instant all the same, because it can use them. 0 to
+     * 3,600,000; 0: they are refused. */
+    mh_tick lateness;
 };
 
 struct mh_head_counters {
     uint32_t measurements; /* taken */
-    uint32_t late;         /* came after their instant was closed */
+    uint32_t late;         /* came after their instant was closed, and the lateness besides */
     uint32_t early;        /* belong to an instant after the next */
     uint32_t repeated;     /* same node, target and instant once more */
     uint32_t overflowed;   /* gave way because MH_REPORTS_MAX was reached */
@@ -43,7 +46,7 @@ struct mh_head {
 enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *config, mh_tick now);
 
 /* Take one measurement. It belongs to the instant within the tolerance of the time it was taken, else to the first after it; one of the
- * instant after the one being gathered is kept for it. Cost: O(MH_REPORTS_MAX).
+ * instant after the one being gathered is kept for it, and one that is late, but not too late, for the one being gathered. Cost: O(MH_REPORTS_MAX).
  * Errors, each counted: MH_ERR_TIME (its instant is closed, or is not yet the next), MH_ERR_REPEATED (same node, target and
  * instant), MH_ERR_CAPACITY (one gave way, this or another: the smallest increment, of equal ones the largest node
  * number, so that what is kept does not depend on the order of arrival). */

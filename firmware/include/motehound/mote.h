@@ -14,7 +14,9 @@
 #ifndef MOTEHOUND_MOTE_H
 #define MOTEHOUND_MOTE_H
 
+#include "motehound/centre.h"
 #include "motehound/clock.h"
+#include "motehound/fixed.h"
 #include "motehound/head.h"
 #include "motehound/protocol.h"
 #include "motehound/sensor.h"
@@ -47,8 +49,14 @@ struct mh_mote_config {
     struct mh_head *head_state;             /* with head */
     const struct mh_clock_functions *clock; /* &mh_clock_flooding; NULL: the mote's own time is the network's */
     const struct mh_clock_config *clock_config;
-    struct mh_clock *clock_state; /* with clock */
+    struct mh_clock *clock_state;   /* with clock */
+    const struct mh_centre *centre; /* &mh_centre_fusion, on the mote that joins the heads' tracks */
+    const void *centre_config;
+    void *centre_state; /* centre->state_size bytes, with centre */
 };
+
+/* What the protocol `fixed` asks of a mote. */
+extern const struct mh_fixed_port mh_mote_fixed;
 
 struct mh_mote_counters {
     uint32_t frames_sent;

@@ -22,7 +22,8 @@ struct mh_tracker {
     enum mh_status (*init)(void *state, const void *config, mh_tick interval);
 
     /* The sampling instant `time` is complete. `measurements` are those taken after the instant before and up to this
-     * one, each node at most once per target, ordered by time, then by node. An empty set is normal: the tracker coasts.
+     * one, each node at most once per target, ordered by time, then by node; from a head that passes late ones on (head.h), of instants before as well. An
+     * empty set is normal: the tracker coasts.
      * Errors: MH_NONE (state advanced, but no position at this instant), MH_ERR_TIME (not after the last instant). */
     enum mh_status (*step)(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
                            struct mh_estimate *estimate);

@@ -31,6 +31,11 @@ static bool is_of_next(const struct mh_head *head, const struct mh_measurement *
     return mh_tick_before(head->instant, measurement->time);
 }
 
+static mh_tick instant_of(const struct mh_head *head, const struct mh_measurement *measurement)
+{
+    return mh_tick_aligned(head->instant, head->config->interval, measurement->time);
+}
+
 static void insert(struct mh_head *head, const struct mh_measurement *measurement)
 {
     uint16_t at = head->count++;
@@ -51,7 +56,7 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
 {
     if (!head || !config || !config->tracker || !config->tracker_config || !config->tracker_state ||
         config->interval < 1 || config->interval > 3600000u || config->window >= config->interval ||
-        config->tolerance > (config->interval - 1) / 2) {
+        config->tolerance > (config->interval - 1) / 2 || config->lateness > 3600000u) {
         return MH_ERR_ARGUMENT;
     }
     const enum mh_status status =
@@ -68,18 +73,12 @@ enum mh_status mh_head_init(struct mh_head *head, const struct mh_head_config *c
     return MH_OK;
 }
 
-/* `time`, or the instant within the tolerance of it: the one before, the one being gathered or the next. */
+/* `time`, or the instant within the tolerance of it. */
 static mh_tick instant_near(const struct mh_head *head, mh_tick time)
 {
-    const int32_t tolerance = (int32_t)head->config->tolerance, interval = (int32_t)head->config->interval;
-    for (int32_t ahead = -interval; ahead <= interval; ahead += interval) {
-        const mh_tick instant = head->instant + (mh_tick)ahead;
-        const int32_t off = mh_ticks_between(instant, time);
-        if (off >= -tolerance && off <= tolerance) {
-            return instant;
-        }
-    }
-    return time;
+    const mh_tick tolerance = head->config->tolerance;
+    const mh_tick instant = mh_tick_aligned(head->instant, head->config->interval, time - tolerance);
+    return instant - time + tolerance <= 2 * tolerance ? instant : time;
 }
 
 enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measurement *given)
@@ -89,7 +88,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
     timed.time = instant_near(head, given->time);
     const int32_t interval = (int32_t)head->config->interval;
     const int32_t ahead = mh_ticks_between(head->instant, measurement->time);
-    if (ahead <= -interval) {
+    if (ahead <= -interval - (int32_t)head->config->lateness) {
         head->counters.late++;
         return MH_ERR_TIME;
     }
@@ -101,7 +100,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
     for (uint16_t i = 0; i < head->count; i++) {
         const struct mh_measurement *kept = &head->measurements[i];
         if (kept->node == measurement->node && kept->target == measurement->target &&
-            is_of_next(head, kept) == is_of_next(head, measurement)) {
+            instant_of(head, kept) == instant_of(head, measurement)) {
             head->counters.repeated++;
             return MH_ERR_REPEATED;
         }

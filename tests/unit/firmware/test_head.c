@@ -11,6 +11,7 @@
 static struct {
     enum mh_status init_status, step_status, predict_status;
     mh_tick interval, time;
+    mh_tick lateness; /* of the head: set by the test */
     size_t count;
     mh_node_id first, last;
     bool ordered;
@@ -34,8 +35,8 @@ static enum mh_status tracker_step(void *state, mh_tick time, const struct mh_me
     for (size_t i = 0; i < count; i++) {
         seen.first = measurements[0].node;
         seen.last = measurements[i].node;
-        seen.ordered &=
-            !mh_tick_before(time, measurements[i].time) && !mh_tick_before(measurements[i].time, time - T + 1);
+        seen.ordered &= !mh_tick_before(time, measurements[i].time) &&
+                        !mh_tick_before(measurements[i].time, time - seen.lateness - T + 1);
         seen.ordered &= i == 0 || mh_tick_before(measurements[i - 1].time, measurements[i].time) ||
                         (measurements[i - 1].time == measurements[i].time &&
                          (measurements[i - 1].node < measurements[i].node ||
@@ -66,7 +67,7 @@ static struct mh_estimate estimate;
 
 void setUp(void)
 {
-    const struct mh_head_config plain = {&tracker, "", &seen, 0, T, WINDOW, 0, false};
+    const struct mh_head_config plain = {&tracker, "", &seen, 0, T, WINDOW, 0, false, 0};
     config = plain;
     memset(&seen, 0, sizeof seen);
     TEST_ASSERT_EQUAL(MH_OK, mh_head_init(&head, &config, 5 * T));
@@ -214,6 +215,31 @@ static void what_is_nearly_of_an_instant_is_of_it(void)
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_head_init(&head, &config, 5 * T));
 }
 
+/* A tracker that can use them gets them before those of the instant. */
+static void late_measurements_are_passed_on_as_far_as_they_are_wanted(void)
+{
+    config.lateness = seen.lateness = 2 * T;
+    config.tolerance = 3;
+    TEST_ASSERT_EQUAL(MH_OK, mh_head_init(&head, &config, 5 * T));
+    TEST_ASSERT_EQUAL(MH_OK, measure(1, 5 * T, 10, 0));
+    TEST_ASSERT_EQUAL(MH_OK, measure(1, 3 * T - 1, 10, 0)); /* of 3 T */
+    TEST_ASSERT_EQUAL(MH_OK, measure(2, 3 * T + 3, 10, 0)); /* of 3 T, too, being near it */
+    TEST_ASSERT_EQUAL(MH_OK, measure(1, 4 * T, 10, 0));
+    TEST_ASSERT_EQUAL(MH_ERR_REPEATED, measure(1, 3 * T, 10, 0));
+    TEST_ASSERT_EQUAL(MH_ERR_REPEATED, measure(1, 5 * T, 10, 0));
+    TEST_ASSERT_EQUAL(MH_ERR_TIME, measure(4, 2 * T, 10, 0));
+    TEST_ASSERT_EQUAL_UINT32(3 * T, head.measurements[0].time);
+    TEST_ASSERT_EQUAL_UINT32(3 * T, head.measurements[1].time);
+    TEST_ASSERT_EQUAL_UINT32(1, head.counters.late);
+    mh_head_close(&head, &estimate);
+    TEST_ASSERT_EQUAL(4, seen.count);
+    TEST_ASSERT_TRUE(seen.ordered);
+    TEST_ASSERT_EQUAL(MH_OK, measure(4, 4 * T, 10, 0));
+    TEST_ASSERT_EQUAL(MH_ERR_TIME, measure(4, 3 * T, 10, 0)); /* now too late */
+    config.lateness = 3600001u;
+    TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_head_init(&head, &config, 5 * T));
+}
+
 static void instants_go_on_across_the_wrap(void)
 {
     TEST_ASSERT_EQUAL_UINT32((mh_tick)0 - 300, first_instant(T - 300, (mh_tick)0 - 400));
@@ -239,6 +265,7 @@ int main(void)
     RUN_TEST(the_smallest_increment_gives_way);
     RUN_TEST(without_a_position_the_next_instant_is_gathered_all_the_same);
     RUN_TEST(what_is_nearly_of_an_instant_is_of_it);
+    RUN_TEST(late_measurements_are_passed_on_as_far_as_they_are_wanted);
     RUN_TEST(instants_go_on_across_the_wrap);
     port_exit(UNITY_END() > 0);
     return 0;

@@ -120,7 +120,7 @@ void setUp(void)
 {
     const struct mh_sensor_config plain_sensor = {
         .q20_per_count = 1, .counts_max = 1000, .interval = T, .threshold = 100};
-    const struct mh_head_config plain_head = {&tracker, "", &tracker_does, 0, T, 400, 0, false};
+    const struct mh_head_config plain_head = {&tracker, "", &tracker_does, 0, T, 400, 0, false, 0};
     const struct mh_mote_config sensor_node = {.id = NODE,
                                                .place = {3000, 4000, 5000},
                                                .sensor = &sensor,
