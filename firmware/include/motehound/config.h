@@ -85,6 +85,22 @@
 #endif
 #endif
 
+/* Places among which a leak is looked for where the wind is measured, 28 bytes each, and sensors whose background is followed, 12 bytes each. */
+#ifndef MH_LEAK_PLACES_MAX
+#ifdef __AVR__
+#define MH_LEAK_PLACES_MAX 8
+#else
+#define MH_LEAK_PLACES_MAX 16
+#endif
+#endif
+#ifndef MH_LEAK_SENSORS_MAX
+#ifdef __AVR__
+#define MH_LEAK_SENSORS_MAX 8
+#else
+#define MH_LEAK_SENSORS_MAX 16
+#endif
+#endif
+
 /* Largest frame, in bytes, check sum included: the largest PSDU of IEEE 802.15.4. */
 #define MH_FRAME_MAX 127
 
@@ -231,6 +247,10 @@
 #endif
 #if MH_STACKED_MAX < 1 || MH_STACKED_MAX > 64
 #error "MH_STACKED_MAX must be 1 to 64: a stacked update inverts a matrix of this size"
+#endif
+#if MH_LEAK_PLACES_MAX < 1 || MH_LEAK_PLACES_MAX > 1024 || MH_LEAK_SENSORS_MAX < 1 || MH_LEAK_SENSORS_MAX > 1024
+#error                                                                                                                 \
+    "MH_LEAK_PLACES_MAX and MH_LEAK_SENSORS_MAX must be 1 to 1024: the sensors are searched linearly, a reading costs 6 exponentials a place"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
