@@ -101,6 +101,15 @@
 #endif
 #endif
 
+/* Estimates that are fused at once, and so clusters of a fusion centre: some 130 bytes each there, 85 bytes of stack where weights are searched. */
+#ifndef MH_FUSED_MAX
+#ifdef __AVR__
+#define MH_FUSED_MAX 4
+#else
+#define MH_FUSED_MAX 8
+#endif
+#endif
+
 /* Largest frame, in bytes, check sum included: the largest PSDU of IEEE 802.15.4. */
 #define MH_FRAME_MAX 127
 
@@ -251,6 +260,9 @@
 #if MH_LEAK_PLACES_MAX < 1 || MH_LEAK_PLACES_MAX > 1024 || MH_LEAK_SENSORS_MAX < 1 || MH_LEAK_SENSORS_MAX > 1024
 #error                                                                                                                 \
     "MH_LEAK_PLACES_MAX and MH_LEAK_SENSORS_MAX must be 1 to 1024: the sensors are searched linearly, a reading costs 6 exponentials a place"
+#endif
+#if MH_FUSED_MAX < 2 || MH_FUSED_MAX > 16
+#error "MH_FUSED_MAX must be 2 to 16: feedback has a bit for each cluster in two bytes"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"

@@ -22,21 +22,9 @@
 #include "motehound/summary.h"
 #include "motehound/white_acceleration.h"
 
-/* Clusters of one centre: 120 bytes each. */
-#ifndef MH_FUSION_CLUSTERS_MAX
-#ifdef __AVR__
-#define MH_FUSION_CLUSTERS_MAX 4
-#else
-#define MH_FUSION_CLUSTERS_MAX 8
-#endif
-#endif
-#if MH_FUSION_CLUSTERS_MAX < 2 || MH_FUSION_CLUSTERS_MAX > 16
-#error "MH_FUSION_CLUSTERS_MAX must be 2 to 16: feedback has a bit for each in two bytes"
-#endif
-
 struct mh_fusion_centre_config {
     enum mh_fusion_rule rule; /* any but MH_FUSION_CENTRAL */
-    uint8_t clusters;         /* 1 to MH_FUSION_CLUSTERS_MAX */
+    uint8_t clusters;         /* 1 to MH_FUSED_MAX */
     struct mh_place origin;   /* of all coordinates */
     struct mh_white_acceleration motion;
     mh_tick keep;             /* see above */

@@ -22,7 +22,7 @@
 
 enum mh_summary_kind { MH_SUMMARY_PLAIN = 1, MH_SUMMARY_SPLIT, MH_SUMMARY_INCREMENT, MH_SUMMARY_FUSED };
 
-enum { MH_SUMMARY_STATES = 4, MH_SUMMARY_CLUSTERS_MAX = 16 };
+enum { MH_SUMMARY_STATES = 4 };
 
 struct mh_summary {
     enum mh_summary_kind kind;
@@ -39,8 +39,8 @@ struct mh_summary {
 /* -> bytes[0 .. MH_SUMMARY_BYTES_MAX). Returns the length. The summary must be one that mh_summary_read takes. */
 size_t mh_summary_write(const struct mh_summary *summary, uint8_t *bytes);
 
-/* And back; `summary` is untouched after an error. Errors: MH_ERR_CORRUPT (kind, length, a number that is not finite, a covariance that is not positive definite;
- * of an increment no more than that its numbers are finite and its diagonal is not clearly negative can be known here). */
+/* And back; `summary` is untouched after an error. Errors: MH_ERR_CORRUPT (kind, length, a number that is not finite, a covariance that is not positive definite. Of an increment only that its
+ * numbers are finite can be known here). */
 enum mh_status mh_summary_read(struct mh_summary *summary, const uint8_t *bytes, size_t length);
 
 /* The kind of summary that heads send to a centre of this rule. */

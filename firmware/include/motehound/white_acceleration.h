@@ -16,8 +16,9 @@ struct mh_white_acceleration {
     struct mh_vec2 variance; /* of the acceleration's components, (m/s2)^2, > 0 */
 };
 
-/* From the beginning of a tick to `elapsed` later: x = F x, P = F P F' + Q; F 4 x 4, row by row, Q packed (matrix.h). Q is zero where elapsed is,
- * and positive definite from the second tick on. A tick that has begun accelerates over what has passed of it. */
+/* Over `elapsed`: x = F x, P = F P F' + Q; F 4 x 4, row by row, Q packed (matrix.h). Q is zero where elapsed is, and positive definite from
+ * the second tick on. What is left over after whole ticks T, r < T, counts as a tick of r whose variance is larger by T / r, so that the
+ * velocity's variance grows evenly with time. */
 void mh_white_acceleration(const struct mh_white_acceleration *model, mh_tick elapsed, mh_real *F, mh_real *Q);
 
 #endif

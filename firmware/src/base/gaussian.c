@@ -137,17 +137,17 @@ void mh_covariance_predict(uint8_t n, mh_real *P, const mh_real *F, const mh_rea
 {
     mh_real before[MH_PACKED_SIZE(MH_STATES_MAX)];
     memcpy(before, P, packed_size(n) * sizeof before[0]);
-    for (uint_fast8_t j = 0; j < n; j++) {
+    for (int j = 0; j < n; j++) {
         mh_real moved[MH_STATES_MAX]; /* P times row j of F */
-        for (uint_fast8_t k = 0; k < n; k++) {
+        for (int k = 0; k < n; k++) {
             moved[k] = 0;
-            for (uint_fast8_t m = 0; m < n; m++) {
+            for (int m = 0; m < n; m++) {
                 moved[k] += before[mh_packed_index(k, m)] * F[j * n + m];
             }
         }
-        for (uint_fast8_t i = 0; i <= j; i++) {
+        for (int i = 0; i <= j; i++) {
             mh_real sum = Q ? *Q++ : 0;
-            for (uint_fast8_t k = 0; k < n; k++) {
+            for (int k = 0; k < n; k++) {
                 sum += F[i * n + k] * moved[k];
             }
             *P++ = sum;
@@ -166,8 +166,8 @@ enum mh_status mh_gaussian_reduction(const struct mh_gaussian *before, const str
     if (status != MH_OK) {
         return status;
     }
-    for (uint_fast8_t i = 0; i < n; i++) {
-        for (uint_fast8_t j = 0; j < n; j++) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
             A[j] = after->P[mh_packed_index(i, j)];
         }
         mh_cholesky_solve(n, root.L, A);
