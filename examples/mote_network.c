@@ -63,7 +63,11 @@ int main(void)
     mh_diffusion_config_default(&diffusion);
     /* a sample every second, reported if it has risen by 0.2 g/m2; the head waits half a second for the reports */
     const struct mh_sensor_config sensor = {0, MH_Q20_ONE / 1000, 0, 65535, 1000, MH_Q20(0.2f), false, 0};
-    const struct mh_head_config head = {&mh_tracker_diffusion, &diffusion, &track, 0, 1000, 500, 0};
+    const struct mh_head_config head = {.tracker = &mh_tracker_diffusion,
+                                        .tracker_config = &diffusion,
+                                        .tracker_state = &track,
+                                        .interval = 1000,
+                                        .window = 500};
     for (mh_node_id i = 0; i < MOTES; i++) {
         const struct mh_place place = {(int32_t)(i % SIDE) * SPACING_MM, (int32_t)(i / SIDE) * SPACING_MM, 0};
         const struct mh_head_config *computes = i == HEAD ? &head : NULL;

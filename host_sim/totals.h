@@ -26,6 +26,8 @@
     X(FRAMES_SENT_VICINITIES, "frames_sent_vicinities", c->frames_sent[MH_MESSAGE_VICINITY], "of these lists of neighbours, for neighbours")      \
     X(FRAMES_SENT_TOKENS, "frames_sent_tokens", c->frames_sent[MH_MESSAGE_TOKEN], "of these messages about who has the token of a search")         \
     X(FRAMES_SENT_LEAKS, "frames_sent_leaks", c->frames_sent[MH_MESSAGE_LEAK], "of these leaks found, on their way to the sink")                    \
+    X(FRAMES_SENT_LEADS, "frames_sent_leads", c->frames_sent[MH_MESSAGE_LEAD], "of these such that say that a fixed cluster has a head")               \
+    X(FRAMES_SENT_TAKENS, "frames_sent_takens", c->frames_sent[MH_MESSAGE_TAKEN], "of these acknowledgements of the fusion centre")                \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
     X(FRAMES_DUPLICATE, "frames_duplicate", c->frames_duplicate, "receptions of a frame that the mote had before; its radio keeps them to itself")  \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \

@@ -45,12 +45,14 @@ enum energy_cause account_cause(enum mh_message_kind kind)
     case MH_MESSAGE_REPORT:
     case MH_MESSAGE_POSITION:
     case MH_MESSAGE_LEAK:
+    case MH_MESSAGE_TAKEN:
         return ENERGY_REPORTING;
     case MH_MESSAGE_FORM:
     case MH_MESSAGE_JOIN:
     case MH_MESSAGE_HAND_OVER:
     case MH_MESSAGE_ALERT:
     case MH_MESSAGE_TOKEN:
+    case MH_MESSAGE_LEAD:
         return ENERGY_CLUSTERING;
     case MH_MESSAGE_REQUEST:
     case MH_MESSAGE_ASK:

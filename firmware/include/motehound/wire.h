@@ -20,11 +20,13 @@
 #include "mh_hello_t.h"
 #include "mh_join_t.h"
 #include "mh_landmark_t.h"
+#include "mh_lead_t.h"
 #include "mh_leak_t.h"
 #include "mh_position_t.h"
 #include "mh_report_t.h"
 #include "mh_request_t.h"
 #include "mh_sync_t.h"
+#include "mh_taken_t.h"
 #include "mh_token_t.h"
 #include "mh_vicinity_t.h"
 
@@ -36,6 +38,7 @@
 #define MH_FORM_MEMBERS 16    /* that a form_t names */
 #define MH_HAND_OVER_BYTES 64 /* of a track in a hand_over_t */
 #define MH_VICINITY_NODES 8   /* that a vicinity_t tells of */
+#define MH_CLUSTER_NONE 255   /* not the number of a fixed cluster */
 
 enum mh_message_kind {
     MH_MESSAGE_BEACON,
@@ -54,6 +57,8 @@ enum mh_message_kind {
     MH_MESSAGE_VICINITY,
     MH_MESSAGE_TOKEN,
     MH_MESSAGE_LEAK,
+    MH_MESSAGE_LEAD,
+    MH_MESSAGE_TAKEN,
     MH_MESSAGE_KINDS
 };
 
@@ -81,6 +86,8 @@ struct mh_message {
         mh_vicinity_t vicinity;
         mh_token_t token;
         mh_leak_t leak;
+        mh_lead_t lead;
+        mh_taken_t taken;
     } as;
     enum mh_envelope_kind envelope;
     mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */
@@ -101,7 +108,8 @@ struct mh_wire_type {
 
 extern const struct mh_wire_type mh_wire_beacon, mh_wire_report, mh_wire_request, mh_wire_hello, mh_wire_landmark,
     mh_wire_sync, mh_wire_ask, mh_wire_answer, mh_wire_form, mh_wire_join, mh_wire_hand_over, mh_wire_alert,
-    mh_wire_position, mh_wire_vicinity, mh_wire_token, mh_wire_leak, mh_wire_route, mh_wire_face;
+    mh_wire_position, mh_wire_vicinity, mh_wire_token, mh_wire_leak, mh_wire_lead, mh_wire_taken, mh_wire_route,
+    mh_wire_face;
 
 /* What somebody speaks: types in any order, then NULL. */
 typedef const struct mh_wire_type *const mh_wire_types;

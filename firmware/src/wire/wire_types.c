@@ -106,6 +106,10 @@ static bool leak_sound(const mh_leak_t *leak)
            finite_reals(leak->rate, 1) && finite_reals(leak->spread, 6) && leak->state <= MH_SEARCH_EXHAUSTED;
 }
 
+static bool lead_sound(const mh_lead_t *lead) { return lead->sender != -1 && lead->cluster != MH_CLUSTER_NONE; }
+
+static bool taken_sound(const mh_taken_t *taken) { return taken->cluster != MH_CLUSTER_NONE; }
+
 static bool route_sound(const mh_route_t *route)
 {
     return route->sender != -1 && route->origin != -1 && route->hops >= 0 && route->hops <= MH_ROUTE_HOPS_MAX &&
@@ -147,25 +151,15 @@ TYPE(position, MH_MESSAGE_POSITION, MH_ENVELOPE_NONE, as.position);
 TYPE(vicinity, MH_MESSAGE_VICINITY, MH_ENVELOPE_NONE, as.vicinity);
 TYPE(token, MH_MESSAGE_TOKEN, MH_ENVELOPE_NONE, as.token);
 TYPE(leak, MH_MESSAGE_LEAK, MH_ENVELOPE_NONE, as.leak);
+TYPE(lead, MH_MESSAGE_LEAD, MH_ENVELOPE_NONE, as.lead);
+TYPE(taken, MH_MESSAGE_TAKEN, MH_ENVELOPE_NONE, as.taken);
 TYPE(route, MH_MESSAGE_KINDS, MH_ENVELOPE_ROUTE, header.route);
 TYPE(face, MH_MESSAGE_KINDS, MH_ENVELOPE_FACE, header);
 
-mh_wire_types mh_wire_all[] = {&mh_wire_beacon,
-                               &mh_wire_report,
-                               &mh_wire_request,
-                               &mh_wire_hello,
-                               &mh_wire_landmark,
-                               &mh_wire_sync,
-                               &mh_wire_ask,
-                               &mh_wire_answer,
-                               &mh_wire_form,
-                               &mh_wire_join,
-                               &mh_wire_hand_over,
-                               &mh_wire_alert,
-                               &mh_wire_position,
-                               &mh_wire_vicinity,
-                               &mh_wire_token,
-                               &mh_wire_leak,
-                               &mh_wire_route,
-                               &mh_wire_face,
-                               NULL};
+mh_wire_types mh_wire_all[] = {&mh_wire_beacon,   &mh_wire_report,    &mh_wire_request,
+                               &mh_wire_hello,    &mh_wire_landmark,  &mh_wire_sync,
+                               &mh_wire_ask,      &mh_wire_answer,    &mh_wire_form,
+                               &mh_wire_join,     &mh_wire_hand_over, &mh_wire_alert,
+                               &mh_wire_position, &mh_wire_vicinity,  &mh_wire_token,
+                               &mh_wire_leak,     &mh_wire_lead,      &mh_wire_taken,
+                               &mh_wire_route,    &mh_wire_face,      NULL};

@@ -146,6 +146,16 @@ static struct mh_message example(enum mh_message_kind kind)
         message.as.leak = leak;
         break;
     }
+    case MH_MESSAGE_LEAD: {
+        const mh_lead_t lead = {.sender = 1, .since_ms = -2, .cluster = 250};
+        message.as.lead = lead;
+        break;
+    }
+    case MH_MESSAGE_TAKEN: {
+        const mh_taken_t taken = {.time_ms = -1, .cluster = 3};
+        message.as.taken = taken;
+        break;
+    }
     default: {
         const mh_request_t request = {.sender = 1,
                                       .origin = 2,
@@ -479,6 +489,19 @@ static void fields_of_a_search_that_nobody_writes_are_corrupt(void)
     expect_corrupt(&bad);
 }
 
+static void fields_of_fixed_clusters_that_nobody_writes_are_corrupt(void)
+{
+    struct mh_message bad = example(MH_MESSAGE_LEAD);
+    bad.as.lead.sender = -1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_LEAD);
+    bad.as.lead.cluster = MH_CLUSTER_NONE;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_TAKEN);
+    bad.as.taken.cluster = MH_CLUSTER_NONE;
+    expect_corrupt(&bad);
+}
+
 static void what_clusters_say_makes_the_round_trip(void)
 {
     for (enum mh_message_kind kind = MH_MESSAGE_ASK; kind < MH_MESSAGE_KINDS; kind++) {
@@ -646,6 +669,7 @@ int main(void)
     RUN_TEST(fields_that_nobody_writes_are_corrupt);
     RUN_TEST(fields_of_clusters_that_nobody_writes_are_corrupt);
     RUN_TEST(fields_of_a_search_that_nobody_writes_are_corrupt);
+    RUN_TEST(fields_of_fixed_clusters_that_nobody_writes_are_corrupt);
     RUN_TEST(what_clusters_say_makes_the_round_trip);
     RUN_TEST(envelopes_that_nobody_writes_are_corrupt);
     RUN_TEST(unknown_kinds_are_not_encoded);
