@@ -41,6 +41,10 @@ struct observer {
     /* With clusters, at every sampling instant once the sink knows of the track: where it has the target at estimate->time, after what was
      * reported for that instant; only time, position, velocity and target count. */
     void (*sink)(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time);
+    /* With fixed clusters, what cluster `cluster`, from 0, has by itself whenever it tells the fusion centre, by its node `head`; the sink's estimates are then the
+     * centre's. */
+    void (*local)(void *context, double time_s, uint8_t cluster, mh_node_id head, const struct mh_estimate *estimate,
+                  const struct truth *at_time);
     /* Who follows a track from now on: its head and those that it asks. `is_new`: it counts as a cluster formed. */
     void (*cluster)(void *context, double time_s, uint32_t track, mh_node_id head, const mh_node_id *members,
                     size_t count, bool is_new);

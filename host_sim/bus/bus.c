@@ -7,6 +7,7 @@
 
 #include "motehound_cluster_t.h"
 #include "motehound_frame_t.h"
+#include "motehound_local_t.h"
 #include "motehound_mote_t.h"
 #include "motehound_node_t.h"
 #include "motehound_run_begin_t.h"
@@ -93,6 +94,7 @@ void bus_prepare(void)
 {
     __motehound_cluster_t_get_hash();
     __motehound_frame_t_get_hash();
+    __motehound_local_t_get_hash();
     __motehound_mote_t_get_hash();
     __motehound_node_t_get_hash();
     __motehound_run_begin_t_get_hash();
@@ -198,10 +200,9 @@ static void put_truth(motehound_track_t *message, const struct truth *truth)
     message->true_rate = truth->rate;
 }
 
-static void on_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
-                        const struct truth *at_time, const struct truth *at_arrival)
+static motehound_track_t track_of(const struct bus *bus, mh_node_id head, const struct mh_estimate *estimate,
+                                  const struct truth *at_time, const struct truth *at_arrival)
 {
-    struct bus *bus = context;
     const double origin_x = estimate->origin.x_mm * 1e-3, origin_y = estimate->origin.y_mm * 1e-3;
     motehound_track_t message = {
         .time_s = at_time->time_s,
@@ -223,7 +224,26 @@ static void on_estimate(void *context, double time_s, mh_node_id head, const str
     };
     put_truth(&message, at_time);
     put_states(&message, estimate);
+    return message;
+}
+
+static void on_estimate(void *context, double time_s, mh_node_id head, const struct mh_estimate *estimate,
+                        const struct truth *at_time, const struct truth *at_arrival)
+{
+    struct bus *bus = context;
+    const motehound_track_t message = track_of(bus, head, estimate, at_time, at_arrival);
     PUBLISH(bus, BUS_TRACK, motehound_track_t, message, time_s);
+}
+
+static void on_local(void *context, double time_s, uint8_t cluster, mh_node_id head, const struct mh_estimate *estimate,
+                     const struct truth *at_time)
+{
+    struct bus *bus = context;
+    const motehound_local_t message = {.time_s = at_time->time_s,
+                                       .run = bus->run,
+                                       .cluster = cluster,
+                                       .track = track_of(bus, head, estimate, at_time, at_time)};
+    PUBLISH(bus, BUS_LOCAL, motehound_local_t, message, time_s);
 }
 
 static void on_sink(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time)
@@ -296,6 +316,7 @@ struct observer bus_observer(struct bus *bus)
         .truth = on_truth,
         .estimate = on_estimate,
         .sink = on_sink,
+        .local = on_local,
         .cluster = heard ? on_cluster : NULL,
         .frame = heard ? on_frame : NULL,
         .mote = heard ? on_mote : NULL,

@@ -20,7 +20,9 @@ enum random_purpose {
     RANDOM_SPIKES,
     RANDOM_RADIO_BACKOFF,
     RANDOM_RADIO_SHADOWING,
-    RANDOM_RADIO_BURST
+    RANDOM_RADIO_BURST,
+    RANDOM_TARGET,   /* where it starts and how it accelerates */
+    RANDOM_SUMMARIES /* which of them an ideal network loses */
 };
 
 struct random_stream {

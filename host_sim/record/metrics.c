@@ -61,6 +61,65 @@ static double nees_of(const motehound_track_t *track)
     return normalised(track->states, P, e);
 }
 
+static double claim_of(const motehound_track_t *track)
+{
+    return track->states > 0 ? track->cov_xx_m2 + track->cov_yy_m2 : (double)NAN;
+}
+
+/* NaN is no number to add. Returns 0, or -1 if there is no memory. */
+static int add(struct samples *samples, double value) { return isnan(value) ? 0 : samples_add(samples, value); }
+
+/* `square` and `count` at instant `i`. */
+static int add_square(struct errors *errors, size_t i, double square, double count)
+{
+    while (errors->squares.count <= i) {
+        if (samples_add(&errors->squares, 0) != 0 || samples_add(&errors->counts, 0) != 0) {
+            return -1;
+        }
+    }
+    errors->squares.values[i] += square;
+    errors->counts.values[i] += count;
+    return 0;
+}
+
+static int local_errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)
+{
+    int64_t seen[LOCAL_CLUSTERS] = {0};
+    for (size_t i = 0; i < recorder->local_count; i++) {
+        const motehound_local_t *local = &recorder->locals[i];
+        const int cluster = local->cluster;
+        if (cluster < 0 || cluster >= LOCAL_CLUSTERS || seen[cluster]++ < scenario->metrics.skip_first ||
+            !local->track.true_known) {
+            continue;
+        }
+        if (samples_add(&errors->local_position[cluster], error_of(&local->track)) != 0 ||
+            add(&errors->local_nees[cluster], nees_of(&local->track)) != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
+/* Of fixed clusters: from sampling instant to sampling instant. */
+static int squares_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)
+{
+    const bool fixed = strcmp(scenario->network.protocol, "fixed") == 0;
+    for (size_t i = 0; fixed && i < recorder->track_count; i++) {
+        const motehound_track_t *track = &recorder->tracks[i];
+        const double instant = round((track->time_s - recorder->first_s) / scenario->sensor.interval_s);
+        if (!track->true_known || instant < 0) {
+            continue;
+        }
+        if (add_square(errors, (size_t)instant, pow(error_of(track), 2), 1) != 0) {
+            return -1;
+        }
+        if (i < (size_t)scenario->metrics.skip_first) {
+            errors->squares_skipped = (size_t)instant + 1;
+        }
+    }
+    return 0;
+}
+
 int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)
 {
     int64_t seen[TARGETS] = {0};
@@ -75,19 +134,28 @@ int errors_of(const struct recorder *recorder, const struct scenario *scenario, 
         const double at_arrival = hypot(track->x_m - track->arrival_x_m, track->y_m - track->arrival_y_m);
         if (samples_add(&errors->position, error_of(track)) != 0 || samples_add(&errors->raw_position, raw) != 0 ||
             (track->arrival_known && samples_add(&errors->position_at_arrival, at_arrival) != 0) ||
-            (!isnan(nees) && samples_add(&errors->nees, nees) != 0)) {
+            add(&errors->nees, nees) != 0 || add(&errors->claimed, claim_of(track)) != 0) {
             return -1;
         }
     }
-    return 0;
+    return local_errors_of(recorder, scenario, errors) == 0 && squares_of(recorder, scenario, errors) == 0 ? 0 : -1;
 }
 
 int errors_append(struct errors *errors, const struct errors *more)
 {
-    const bool sound = samples_append(&errors->position, &more->position) == 0 &&
-                       samples_append(&errors->raw_position, &more->raw_position) == 0 &&
-                       samples_append(&errors->position_at_arrival, &more->position_at_arrival) == 0 &&
-                       samples_append(&errors->nees, &more->nees) == 0;
+    bool sound = samples_append(&errors->position, &more->position) == 0 &&
+                 samples_append(&errors->raw_position, &more->raw_position) == 0 &&
+                 samples_append(&errors->position_at_arrival, &more->position_at_arrival) == 0 &&
+                 samples_append(&errors->nees, &more->nees) == 0 &&
+                 samples_append(&errors->claimed, &more->claimed) == 0;
+    for (int c = 0; c < LOCAL_CLUSTERS; c++) {
+        sound = sound && samples_append(&errors->local_position[c], &more->local_position[c]) == 0 &&
+                samples_append(&errors->local_nees[c], &more->local_nees[c]) == 0;
+    }
+    for (size_t i = 0; i < more->squares.count; i++) {
+        sound = sound && add_square(errors, i, more->squares.values[i], more->counts.values[i]) == 0;
+    }
+    errors->squares_skipped = more->squares_skipped;
     return sound ? 0 : -1;
 }
 
@@ -97,6 +165,26 @@ void errors_free(struct errors *errors)
     samples_free(&errors->raw_position);
     samples_free(&errors->position_at_arrival);
     samples_free(&errors->nees);
+    samples_free(&errors->claimed);
+    for (int c = 0; c < LOCAL_CLUSTERS; c++) {
+        samples_free(&errors->local_position[c]);
+        samples_free(&errors->local_nees[c]);
+    }
+    samples_free(&errors->squares);
+    samples_free(&errors->counts);
+}
+
+/* The root mean square error of each instant, added up, and the largest one of those that count. NaN for none. */
+static void metrics_over_instants(const struct errors *errors, double *sum_m, double *worst_m)
+{
+    *sum_m = *worst_m = (double)NAN;
+    for (size_t i = 0; i < errors->squares.count; i++) {
+        if (errors->counts.values[i] > 0) {
+            const double rms_m = sqrt(errors->squares.values[i] / errors->counts.values[i]);
+            *sum_m = isnan(*sum_m) ? rms_m : *sum_m + rms_m;
+            *worst_m = i < errors->squares_skipped ? *worst_m : fmax(*worst_m, rms_m);
+        }
+    }
 }
 
 void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT])
@@ -107,6 +195,14 @@ void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT]
     values[METRIC_RAW_POSITION_RMSE_M] = samples_rms(&errors->raw_position);
     values[METRIC_POSITION_RMSE_AT_ARRIVAL_M] = samples_rms(&errors->position_at_arrival);
     values[METRIC_NEES_MEDIAN] = samples_quantile(&errors->nees, 0.5);
+    values[METRIC_ANEES] = samples_mean(&errors->nees);
+    const double rmse_m = values[METRIC_POSITION_RMSE_M];
+    values[METRIC_CLAIMED_OVER_RMSE] = rmse_m > 0 ? sqrt(samples_mean(&errors->claimed)) / rmse_m : (double)NAN;
+    metrics_over_instants(errors, &values[METRIC_SMSE_M], &values[METRIC_POSITION_RMSE_WORST_M]);
+    for (int c = 0; c < LOCAL_CLUSTERS; c++) {
+        values[METRIC_LOCAL_POSITION_RMSE_M_1 + c] = samples_rms(&errors->local_position[c]);
+        values[METRIC_LOCAL_ANEES_1 + c] = samples_mean(&errors->local_nees[c]);
+    }
 }
 
 static bool lost(const struct recorder *recorder, const struct scenario *scenario)

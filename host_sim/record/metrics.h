@@ -8,12 +8,20 @@
 
 /* The errors of the estimates of one run, or of many together, at which the source was present; the first
  * metrics.skip_first estimates of each target are left out. */
+enum { LOCAL_CLUSTERS = 4 }; /* fixed clusters that have metrics of their own */
+
 struct errors {
     struct samples position;     /* m, at the sampling instant */
     struct samples raw_position; /* m, before filtering */
     struct samples
         position_at_arrival; /* m, against the truth at the time that the tracker says the position belongs to */
     struct samples nees;     /* e' P^-1 e, of all states that the tracker states a covariance of */
+    struct samples claimed;  /* m2, variance of the position that the tracker states, both coordinates added */
+    struct samples local_position[LOCAL_CLUSTERS], local_nees[LOCAL_CLUSTERS]; /* of fixed clusters by themselves */
+    /* Of fixed clusters, all estimates: the sum of their squared errors, m2, and their number, by sampling instants since the first; and how many of these
+     * instants are left out. */
+    struct samples squares, counts;
+    size_t squares_skipped;
 };
 
 /* Metrics in the order of runs.csv, the totals last: identifier, name with its unit, meaning. NaN stands for one that does not apply. */
@@ -24,7 +32,19 @@ struct errors {
     X(POSITION_P95_M, "position_p95_m", "95th percentile of the error")                                                     \
     X(RAW_POSITION_RMSE_M, "raw_position_rmse_m", "root mean square error before the filter")                               \
     X(POSITION_RMSE_AT_ARRIVAL_M, "position_rmse_at_arrival_m", "error against the position at the estimated time of arrival") \
-    X(NEES_MEDIAN, "nees_median", "median normalised squared error of all states (exact: 1.39 of two, 2.37 of three, 3.36 of four)")
+    X(NEES_MEDIAN, "nees_median", "median normalised squared error of all states (exact: 1.39 of two, 2.37 of three, 3.36 of four)") \
+    X(ANEES, "anees", "mean normalised squared error of all states (their number is exact, more is overconfident)")         \
+    X(CLAIMED_OVER_RMSE, "claimed_over_rmse", "the root mean square error that the tracker claims over that which it has")  \
+    X(SMSE_M, "smse_m", "fixed clusters: the root mean square error over the runs, added up over all instants with a position") \
+    X(POSITION_RMSE_WORST_M, "position_rmse_worst_m", "fixed clusters: the root mean square error over the runs at the worst instant") \
+    X(LOCAL_POSITION_RMSE_M_1, "local_position_rmse_m_1", "root mean square error of the first fixed cluster by itself")    \
+    X(LOCAL_POSITION_RMSE_M_2, "local_position_rmse_m_2", "of the second")                                                  \
+    X(LOCAL_POSITION_RMSE_M_3, "local_position_rmse_m_3", "of the third")                                                   \
+    X(LOCAL_POSITION_RMSE_M_4, "local_position_rmse_m_4", "of the fourth")                                                  \
+    X(LOCAL_ANEES_1, "local_anees_1", "mean normalised squared error of the first fixed cluster by itself (4 is exact)")    \
+    X(LOCAL_ANEES_2, "local_anees_2", "of the second")                                                                      \
+    X(LOCAL_ANEES_3, "local_anees_3", "of the third")                                                                       \
+    X(LOCAL_ANEES_4, "local_anees_4", "of the fourth")
 
 #define METRICS_OF_TRACK(X)                                                                                                 \
     X(TRACKED_SHARE, "tracked_share", "share of the sampling instants with the source present that gave a position")        \
@@ -45,7 +65,7 @@ enum metric {
         METRIC_COUNT
 };
 
-enum { METRIC_ERRORS_COUNT = METRIC_NEES_MEDIAN + 1, METRIC_FIRST_TOTAL = METRIC_COUNT - TOTAL_COUNT };
+enum { METRIC_ERRORS_COUNT = METRIC_TRACKED_SHARE, METRIC_FIRST_TOTAL = METRIC_COUNT - TOTAL_COUNT };
 
 extern const char *const metric_names[METRIC_COUNT];
 extern const char *const metric_meanings[METRIC_COUNT];

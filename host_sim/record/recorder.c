@@ -51,6 +51,19 @@ static void on_sink(const lcm_recv_buf_t *buffer, const char *channel, void *con
     }
 }
 
+static void on_local(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    if (grow((void **)&recorder->locals, recorder->local_count, &recorder->local_capacity, sizeof *recorder->locals) &&
+        motehound_local_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->locals[recorder->local_count]) >=
+            0) {
+        recorder->local_count++;
+    } else {
+        recorder->failed = true;
+    }
+}
+
 static void on_node(const lcm_recv_buf_t *buffer, const char *channel, void *context)
 {
     (void)channel;
@@ -104,6 +117,7 @@ int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
     const bool sound = lcm_subscribe(lcm, BUS_NODE, on_node, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRACK, on_track, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_SINK, on_sink, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_LOCAL, on_local, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRUTH, on_truth, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TOTALS, on_totals, recorder) != NULL;
     return sound ? 0 : -1;
@@ -113,6 +127,7 @@ void recorder_free(struct recorder *recorder)
 {
     free(recorder->tracks);
     free(recorder->sinks);
+    free(recorder->locals);
     free(recorder->nodes);
     *recorder = (struct recorder){0};
 }

@@ -2,6 +2,7 @@
 #ifndef MOTEHOUND_SIM_RECORDER_H
 #define MOTEHOUND_SIM_RECORDER_H
 
+#include "motehound_local_t.h"
 #include "motehound_node_t.h"
 #include "motehound_track_t.h"
 #include "totals.h"
@@ -14,6 +15,8 @@ struct recorder {
     size_t track_count, track_capacity;
     motehound_track_t *sinks; /* what the sink had, likewise */
     size_t sink_count, sink_capacity;
+    motehound_local_t *locals; /* what fixed clusters had, likewise */
+    size_t local_count, local_capacity;
     motehound_node_t *nodes; /* the motes, where the bus tells them */
     size_t node_count, node_capacity;
     size_t samples;             /* sampling instants at which the source was present */

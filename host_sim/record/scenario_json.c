@@ -33,6 +33,15 @@ static json_t *sweep_values(const struct scenario *scenario)
     return list;
 }
 
+static json_t *numbers(const struct number_list *numbers)
+{
+    json_t *list = json_array();
+    for (unsigned i = 0; i < numbers->count; i++) {
+        json_array_append_new(list, json_real(numbers->values[i]));
+    }
+    return list;
+}
+
 static json_t *value_of(const struct scenario *scenario, const struct scenario_key *key)
 {
     const char *member = (const char *)scenario + key->offset;
@@ -50,6 +59,8 @@ static json_t *value_of(const struct scenario *scenario, const struct scenario_k
         return json_string(*(char *const *)member);
     case KEY_POINTS:
         return points(scenario);
+    case KEY_NUMBERS:
+        return numbers((const struct number_list *)(const void *)member);
     case KEY_LIST:
         return sweep_values(scenario);
     }

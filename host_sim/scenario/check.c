@@ -1,7 +1,9 @@
 /* What only holds between the keys of a scenario. */
+#include "motehound/config.h"
 #include "radio/profile.h"
 #include "scenario/keys.h"
 #include "scenario/text.h"
+#include "world/clusters.h"
 #include "world/faults.h"
 #include "world/mobility.h"
 
@@ -35,6 +37,7 @@ static double duration(const struct scenario *scenario)
     case PATH_ARCS: /* two quarters of a circle whose chords are each half the way */
         return leg_length(&points[0], &points[1]) / (4 * sin(acos(-1) / 4)) * acos(-1) / scenario->source.speed_mps;
     case PATH_GAUSS_MARKOV:
+    case PATH_WHITE_ACCELERATION:
         return (double)scenario_steps(scenario) * scenario->sensor.interval_s;
     case PATH_STILL:
     case PATH_NONE:
@@ -139,13 +142,89 @@ static int check_rhythm(const struct scenario *scenario, const char *name, char 
     return 0;
 }
 
+/* The lists of clusters that stand on rings. */
+static int check_rings(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    if (scenario->network.layout != LAYOUT_RINGS) {
+        return 0;
+    }
+    const unsigned count = scenario->clusters.nodes.count;
+    for (unsigned r = 0; r < count; r++) {
+        const double size = scenario->clusters.nodes.values[r];
+        if (size > floor(size)) {
+            return fail(error, error_size, "%s: clusters.nodes: expected whole numbers, found %g", name, size);
+        }
+        if ((double)scenario->clusters.shared > size) {
+            return fail(error, error_size,
+                        "%s: clusters.shared: expected at most the nodes of each cluster, found %lld", name,
+                        (long long)scenario->clusters.shared);
+        }
+    }
+    if (scenario->clusters.range_variance_m2.count != count) {
+        return fail(error, error_size,
+                    "%s: clusters.range_variance_m2: expected as many numbers as clusters.nodes has, %u, found %u",
+                    name, count, scenario->clusters.range_variance_m2.count);
+    }
+    if ((double)scenario->network.nodes < (double)clusters_nodes(scenario) ||
+        (double)scenario->network.nodes > (double)clusters_nodes(scenario)) {
+        return fail(error, error_size, "%s: network.nodes: expected those of clusters.nodes together, %zu, found %lld",
+                    name, clusters_nodes(scenario), (long long)scenario->network.nodes);
+    }
+    if (scenario->sensor.noisy_detection) {
+        return fail(error, error_size, "%s: sensor.noisy_detection: expected false for network.layout rings", name);
+    }
+    return 0;
+}
+
+/* Fixed clusters know how their target starts and moves. */
+static int check_fixed(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const bool fixed = strcmp(scenario->network.protocol, "fixed") == 0;
+    const bool tracks = strncmp(scenario->tracker.name, "cv_", 3) == 0;
+    if (fixed != tracks) {
+        return fail(
+            error, error_size,
+            "%s: tracker.name: expected cv_ukf or cv_ekf for network.protocol fixed, and for that alone, found %s",
+            name, scenario->tracker.name);
+    }
+    if (!fixed) {
+        return 0;
+    }
+    if (scenario->network.layout != LAYOUT_RINGS || scenario->source.path != PATH_WHITE_ACCELERATION ||
+        scenario->sensor.quantity != QUANTITY_RANGE) {
+        return fail(error, error_size,
+                    "%s: network.protocol: expected fixed only where network.layout is rings, source.path is "
+                    "white_acceleration and sensor.quantity is range",
+                    name);
+    }
+    const double ratio = scenario->fusion.report_s / scenario->sensor.interval_s;
+    if (ratio < 1 - 1e-9 || fabs(ratio - round(ratio)) > 1e-9) {
+        return fail(error, error_size,
+                    "%s: fusion.report_s: expected a whole multiple of sensor.interval_s = %g, found %g", name,
+                    scenario->sensor.interval_s, scenario->fusion.report_s);
+    }
+    if (scenario->clusters.nodes.count > MH_FUSED_MAX) {
+        return fail(error, error_size, "%s: clusters.nodes: expected at most %d clusters for network.protocol fixed",
+                    name, MH_FUSED_MAX);
+    }
+    if (!scenario->network.ideal && (scenario->fusion.report_loss > 0 || scenario->clusters.shared > 0)) {
+        return fail(error, error_size,
+                    "%s: fusion.report_loss, clusters.shared: expected 0 unless network.ideal is true", name);
+    }
+    return 0;
+}
+
 /* Clusters follow a target that is ranged, and the ideal network has nothing but them. */
 static int check_clusters(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
     const bool clusters = strcmp(scenario->network.protocol, "cluster") == 0;
-    if (scenario->network.ideal && !clusters) {
-        return fail(error, error_size, "%s: network.ideal: expected true for network.protocol cluster alone, found %s",
-                    name, scenario->network.protocol);
+    if (check_rings(scenario, name, error, error_size) != 0 || check_fixed(scenario, name, error, error_size) != 0) {
+        return -1;
+    }
+    if (scenario->network.ideal && !clusters && strcmp(scenario->network.protocol, "fixed") != 0) {
+        return fail(error, error_size,
+                    "%s: network.ideal: expected true for network.protocol cluster and fixed alone, found %s", name,
+                    scenario->network.protocol);
     }
     if (clusters && (scenario->sensor.quantity != QUANTITY_RANGE || scenario->source.path == PATH_NONE)) {
         return fail(error, error_size,
@@ -196,7 +275,8 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         return fail(error, error_size,
                     "%s: source.duration_s: expected more than 0 for a still source or none, found 0", name);
     }
-    if (scenario->source.path == PATH_GAUSS_MARKOV && scenario_steps(scenario) < 1) {
+    if ((scenario->source.path == PATH_GAUSS_MARKOV || scenario->source.path == PATH_WHITE_ACCELERATION) &&
+        scenario_steps(scenario) < 1) {
         return fail(error, error_size, "%s: source.duration_s: expected at least sensor.interval_s = %g, found %g",
                     name, scenario->sensor.interval_s, scenario->source.duration_s);
     }

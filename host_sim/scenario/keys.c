@@ -16,10 +16,10 @@ const struct scenario_key scenario_keys[] = {
     {"description", KEY_TEXT, AT(description), "", 0, 400, NULL, "one sentence for `motehound list`"},
     {"field.width_m", KEY_NUMBER, AT(field.width_m), "80", 1, 1e5, NULL, "the field is [0, width] x [0, height]"},
     {"field.height_m", KEY_NUMBER, AT(field.height_m), "80", 1, 1e5, NULL, ""},
-    {"source.path", KEY_CHOICE, AT(source.path), "arcs", 0, 0, "waypoints|arcs|still|gauss_markov|none", "straight legs; two arcs of 90 degrees, left then right; no movement; a Gauss-Markov walk as target.* says, another for each seed; or no source at all"},
+    {"source.path", KEY_CHOICE, AT(source.path), "arcs", 0, 0, "waypoints|arcs|still|gauss_markov|white_acceleration|none", "straight legs; two arcs of 90 degrees, left then right; no movement; as target.* says, another for each seed, a Gauss-Markov walk or a constant velocity disturbed by random accelerations; or no source at all"},
     {"source.points", KEY_POINTS, AT(source.points), "0,0; 38,78", 1, 1000, NULL, "corners, in a file as a list of {x_m, y_m, speed_factor}; the factor belongs to the leg that ends there"},
     {"source.speed_mps", KEY_NUMBER, AT(source.speed_mps), "1", 0.01, 100, NULL, "along the path"},
-    {"source.duration_s", KEY_NUMBER, AT(source.duration_s), "0", 0, 1e6, NULL, "of a still source, a Gauss-Markov walk, or of the run without a source; others take as long as their path"},
+    {"source.duration_s", KEY_NUMBER, AT(source.duration_s), "0", 0, 1e6, NULL, "of a still source, one that moves as target.* says, or of the run without a source; others take as long as their path"},
     {"source.release_gps", KEY_NUMBER, AT(source.release_gps), "100", 0, 1e6, NULL, "mean release rate"},
     {"source.release_variation", KEY_NUMBER, AT(source.release_variation), "0", 0, 0.95, NULL, "share of the release that varies as a sine"},
     {"source.release_period_s", KEY_NUMBER, AT(source.release_period_s), "60", 0.1, 1e6, NULL, "period of that sine"},
@@ -28,16 +28,24 @@ const struct scenario_key scenario_keys[] = {
     {"target.speed_sd", KEY_NUMBER, AT(target.speed_sd), "0.2", 0, 1, NULL, "gauss_markov: standard deviation of the speed, as a share of its mean"},
     {"target.heading_sd_rad", KEY_NUMBER, AT(target.heading_sd_rad), "0.39269908169872414", 0, 10, NULL, "gauss_markov: standard deviation of the heading"},
     {"target.memory", KEY_NUMBER, AT(target.memory), "0.9", 0, 1, NULL, "gauss_markov: of speed and heading from one sample to the next; 0 draws them anew, 1 keeps them"},
+    {"target.x_m", KEY_NUMBER, AT(target.x_m), "0", -1e5, 1e5, NULL, "white_acceleration: where it starts, on average"},
+    {"target.y_m", KEY_NUMBER, AT(target.y_m), "0", -1e5, 1e5, NULL, ""},
+    {"target.vx_mps", KEY_NUMBER, AT(target.vx_mps), "1", -1e3, 1e3, NULL, "white_acceleration: how it moves then, on average"},
+    {"target.vy_mps", KEY_NUMBER, AT(target.vy_mps), "0", -1e3, 1e3, NULL, ""},
+    {"target.position_sd_m", KEY_NUMBER, AT(target.position_sd_m), "1", 1e-3, 1e4, NULL, "white_acceleration: standard deviation of each coordinate of its start"},
+    {"target.velocity_sd_mps", KEY_NUMBER, AT(target.velocity_sd_mps), "0.2", 1e-3, 1e3, NULL, "white_acceleration: the same of its velocity"},
+    {"target.acceleration_x_mps2", KEY_NUMBER, AT(target.acceleration_x_mps2), "0.01", 1e-5, 100, NULL, "white_acceleration: standard deviation of its acceleration along x, drawn anew for each sampling interval"},
+    {"target.acceleration_y_mps2", KEY_NUMBER, AT(target.acceleration_y_mps2), "0.01", 1e-5, 100, NULL, "the same along y"},
     {"network.nodes", KEY_COUNT, AT(network.nodes), "1280", 4, 1e6, NULL, "sensor nodes"},
-    {"network.layout", KEY_CHOICE, AT(network.layout), "uniform", 0, 0, "uniform|r2|grid|hashed|file", "random, quasi-random, cell-centred grid, random as the published experiments with ranges draw it, or from network.file"},
+    {"network.layout", KEY_CHOICE, AT(network.layout), "uniform", 0, 0, "uniform|r2|grid|hashed|file|rings", "random, quasi-random, cell-centred grid, random as the published experiments with ranges draw it, from network.file, or on rings as clusters.* says"},
     {"network.file", KEY_TEXT, AT(network.file), "", 0, 4000, NULL, "nodes.csv of layout file; in a file relative to it"},
     {"network.spacing_m", KEY_NUMBER, AT(network.spacing_m), "0", 0, 1e5, NULL, "grid: side of its cells, from the field's corner; 0 for cells that fill the field"},
     {"network.jitter", KEY_NUMBER, AT(network.jitter), "0", 0, 0.5, NULL, "grid: a node stands off the middle of its cell by up to this share of its side"},
     {"network.density", KEY_NUMBER, AT(network.density), "0", 0, 1e4, NULL, "mean number of nodes within sensor.range_m of a place: gives the field's side, with the head in the middle; 0: field.* and network.sink_* do"},
     {"network.sink_x_m", KEY_NUMBER, AT(network.sink_x_m), "40", -1e5, 1e5, NULL, "where the head stands"},
     {"network.sink_y_m", KEY_NUMBER, AT(network.sink_y_m), "40", -1e5, 1e5, NULL, ""},
-    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection|direct|cluster|chatter", "how measurements reach the head; cluster: nodes around a ranged target follow it and report it to the sink; chatter: not at all, each node broadcasts 30 bytes once in sensor.interval_s"},
-    {"network.ideal", KEY_SWITCH, AT(network.ideal), "false", 0, 0, NULL, "cluster: without frames, as published: nothing is lost or collides, messages take no time, and energy is charged message by message"},
+    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection|direct|cluster|fixed|chatter", "how measurements reach the head; cluster: nodes around a ranged target follow it and report it to the sink; fixed: the clusters of clusters.* all follow it, and the sink joins what they say as fusion.* says; chatter: not at all, each node broadcasts 30 bytes once in sensor.interval_s"},
+    {"network.ideal", KEY_SWITCH, AT(network.ideal), "false", 0, 0, NULL, "cluster, fixed: without frames, as published: nothing is lost or collides (but see fusion.report_loss), messages take no time; of cluster, energy is charged message by message"},
     {"protocol.routing", KEY_CHOICE, AT(protocol.routing), "tree", 0, 0, "tree|geographic|greedy", "collection: reports travel up the tree of the head's beacons, or by places to the head's, with face routing around voids or without"},
     {"protocol.hello_s", KEY_NUMBER, AT(protocol.hello_s), "10", 1, 600, NULL, "geographic, greedy: between a node's hellos to its neighbours"},
     {"protocol.election", KEY_CHOICE, AT(protocol.election), "sacx", 0, 0, "sacx|sac|rho|scm|scm_near|scm_set", "cluster: who follows the target next: nodes along its predicted path (sacx, sac), along a ray in its heading (rho), or whoever detects it: the set when one joins (scm), when the nearest changes (scm_near), at any change (scm_set)"},
@@ -45,6 +53,16 @@ const struct scenario_key scenario_keys[] = {
     {"protocol.horizon", KEY_COUNT, AT(protocol.horizon), "4", 1, MH_ELECTION_HORIZON_MAX, NULL, "sac: predicted samples that the election looks at"},
     {"protocol.least_answers", KEY_COUNT, AT(protocol.least_answers), "4", 0, MH_CLUSTER_MAX + 1, NULL, "sac, sacx, rho: an election when fewer nodes than this measure the target or will"},
     {"protocol.watch_s", KEY_NUMBER, AT(protocol.watch_s), "10", 0.1, 3600, NULL, "cluster: a node that hears of no track looks for a target this often, at a time of its own"},
+    {"clusters.nodes", KEY_NUMBERS, AT(clusters.nodes), "3, 4, 5, 6", 1, 32, NULL, "rings: of each cluster; clusters stand in the cells of a square grid over the field, row by row"},
+    {"clusters.ring_m", KEY_NUMBER, AT(clusters.ring_m), "15", 0.1, 1e4, NULL, "rings: radius; the r-th ring is turned by r pi / 7"},
+    {"clusters.range_variance_m2", KEY_NUMBERS, AT(clusters.range_variance_m2), "0.02, 0.015, 0.01, 0.03", 1e-6, 1e4, NULL, "rings: of the ranges of each cluster, in place of sensor.range_noise_m"},
+    {"clusters.every", KEY_COUNT, AT(clusters.every), "2", 1, 1000, NULL, "rings: the first node of a cluster samples at each so many sampling instants"},
+    {"clusters.rates", KEY_COUNT, AT(clusters.rates), "3", 1, 32, NULL, "rings: node i of n takes 1 + floor(rates i / n) times as long as the first between samples"},
+    {"clusters.shared", KEY_COUNT, AT(clusters.shared), "0", 0, 32, NULL, "rings: a cluster hears so many nodes of the next one too"},
+    {"fusion.rule", KEY_CHOICE, AT(fusion.rule), "ci", 0, 0, "ci|ci_trace_opt|ci_det|sci|ici|ei|hif|hif_feedback|naive|central", "fixed: how the sink joins what clusters say: covariance intersection with weights by the traces or optimal ones, split covariance, inverse covariance or ellipsoidal intersection, increments of information, without or with the result told to the clusters, as if independent; central: the sink has all samples itself"},
+    {"fusion.report_s", KEY_NUMBER, AT(fusion.report_s), "1", 0.1, 3600, NULL, "fixed: between what a cluster tells the sink"},
+    {"fusion.report_loss", KEY_NUMBER, AT(fusion.report_loss), "0", 0, 1, NULL, "fixed, ideal: probability that the sink does not get it"},
+    {"fusion.keep_s", KEY_NUMBER, AT(fusion.keep_s), "10", 0, 3600, NULL, "fixed: what a cluster told last stands, predicted, for what is lost, until it is this old (all rules but hif*, which lose nothing)"},
     {"traffic.sources", KEY_COUNT, AT(traffic.sources), "0", 0, 1e6, NULL, "path none: nodes that report once in sensor.interval_s, each at its own time"},
     {"sensor.quantity", KEY_CHOICE, AT(sensor.quantity), "concentration", 0, 0, "concentration|range", "what is measured: the source's diffusing substance, or how far the target is"},
     {"sensor.interval_s", KEY_NUMBER, AT(sensor.interval_s), "1", 0.01, 3600, NULL, "between samples; in a replay the recording's own unless set"},
@@ -57,6 +75,7 @@ const struct scenario_key scenario_keys[] = {
     {"sensor.outage_s", KEY_NUMBER, AT(sensor.outage_s), "0", 0, 1e6, NULL, "... for this long"},
     {"sensor.range_m", KEY_NUMBER, AT(sensor.range_m), "50", 0.1, 1000, NULL, "range: the target is detected within"},
     {"sensor.range_noise_m", KEY_NUMBER, AT(sensor.range_noise_m), "5", 0, 100, NULL, "range: standard deviation of a range"},
+    {"sensor.noise_correlation", KEY_NUMBER, AT(sensor.noise_correlation), "0", 0, 1, NULL, "range: correlation of the noise of any two ranges of the same instant, unknown to the tracker"},
     {"sensor.noisy_detection", KEY_SWITCH, AT(sensor.noisy_detection), "false", 0, 0, NULL, "range: the noisy range decides whether the target is detected, not the true one"},
     {"radio.range_m", KEY_NUMBER, AT(radio.range_m), "15", 0.1, 1e5, NULL, "disc: frames reach every mote within"},
     {"radio.delay_s", KEY_NUMBER, AT(radio.delay_s), "0.001", 0, 10, NULL, "of one hop, beside the air time"},
@@ -116,7 +135,7 @@ const struct scenario_key scenario_keys[] = {
     {"clock.wander_ppm", KEY_NUMBER, AT(clock.wander_ppm), "0", 0, 50, NULL, "their rates swing by this, with a period of half an hour and a phase of their own"},
     {"clock.sync", KEY_CHOICE, AT(clock.sync), "none", 0, 0, "none|flooding", "how motes get to know the true time; none: they take their own clock's"},
     {"clock.sync_period_s", KEY_NUMBER, AT(clock.sync_period_s), "15", 2, 3600, NULL, "flooding: between rounds, each of two messages a mote"},
-    {"tracker.name", KEY_WORD, AT(tracker.name), "diffusion", 0, 0, "diffusion|luo|range|pftl|msl|centroid", "which tracker the head runs"},
+    {"tracker.name", KEY_WORD, AT(tracker.name), "diffusion", 0, 0, "diffusion|luo|range|pftl|msl|centroid|cv_ukf|cv_ekf", "which tracker the head runs"},
     {"tracker.diffusion_m2ps", KEY_NUMBER, AT(tracker.diffusion_m2ps), "1", 1e-4, 1e3, NULL, "diffusion, luo: assumed diffusion coefficient"},
     {"tracker.chi", KEY_NUMBER, AT(tracker.chi), "0.2", 0, 1000, NULL, "diffusion, luo: significant increment of concentration, g/m2"},
     {"tracker.release_gps", KEY_NUMBER, AT(tracker.release_gps), "100", 1e-3, 1e5, NULL, "diffusion: expected release rate"},
@@ -135,6 +154,7 @@ const struct scenario_key scenario_keys[] = {
     {"tracker.particles", KEY_COUNT, AT(tracker.particles), "50", 1, 200, NULL, "pftl, msl: number of particles"},
     {"tracker.resampling", KEY_CHOICE, AT(tracker.resampling), "prc", 0, 0, "prc|systematic", "pftl: particles of little weight are redrawn (partial rejection control), or all are resampled"},
     {"tracker.literal", KEY_SWITCH, AT(tracker.literal), "false", 0, 0, NULL, "pftl: the region widens until the effective number of particles is large, as published, and not until the best one fits"},
+    {"tracker.ukf_alpha", KEY_NUMBER, AT(tracker.ukf_alpha), "1", 0.1, 1, NULL, "cv_ukf: how far the sigma points stand from the mean, in standard deviations times sqrt(4)"},
     {"tracker.window_s", KEY_NUMBER, AT(tracker.window_s), "0", 0, 3600, NULL, "reports are waited for this long after their sample; 0 for half the interval"},
     {"energy.profile", KEY_WORD, AT(energy.profile), "mica2", 0, 0, "mica2|micaz|none", "whose currents are charged; none: energy is not accounted for"},
     {"energy.battery_j", KEY_NUMBER, AT(energy.battery_j), "0", 0, 1e6, NULL, "of each mote, which dies when it is used up; 0: all are on mains"},
@@ -185,6 +205,9 @@ const char *scenario_key_expectation(const struct scenario_key *key, char *text,
         break;
     case KEY_POINTS:
         snprintf(text, size, "%.0f to %.0f points `x,y[,speed factor]; ...`", key->minimum, key->maximum);
+        break;
+    case KEY_NUMBERS:
+        snprintf(text, size, "1 to %d numbers %g to %g `a, b, ...`", SCENARIO_NUMBERS_MAX, key->minimum, key->maximum);
         break;
     case KEY_LIST:
         snprintf(text, size, "at most %.0f values in UTF-8 `a, b, ...`", key->maximum);
@@ -339,6 +362,27 @@ static bool set_list(struct scenario *scenario, const struct scenario_key *key, 
     return true;
 }
 
+static bool set_numbers(struct number_list *member, const struct scenario_key *key, const char *value)
+{
+    struct number_list list = {.count = 0};
+    char **pieces;
+    const int count = split(value, ',', &pieces);
+    if (count < 0) {
+        return false;
+    }
+    bool sound = count <= SCENARIO_NUMBERS_MAX;
+    for (int i = 0; i < count && sound; i++) {
+        sound = text_number(pieces[i], strlen(pieces[i]), &list.values[i]) && list.values[i] >= key->minimum &&
+                list.values[i] <= key->maximum;
+        list.count++;
+    }
+    free_list(pieces, (unsigned)count);
+    if (sound) {
+        *member = list;
+    }
+    return sound;
+}
+
 static bool set_text(char **member, const char *value)
 {
     char *copy = strdup(value);
@@ -386,6 +430,8 @@ static bool set(struct scenario *scenario, const struct scenario_key *key, const
         return (double)strlen(value) <= key->maximum && is_utf8(value) && set_text(member, value);
     case KEY_POINTS:
         return set_points(scenario, key, value);
+    case KEY_NUMBERS:
+        return set_numbers(member, key, value);
     case KEY_LIST:
         return set_list(scenario, key, value);
     }

@@ -6,14 +6,15 @@
 #include "scenario/scenario.h"
 
 enum key_type {
-    KEY_NUMBER, /* double */
-    KEY_COUNT,  /* int64_t */
-    KEY_SWITCH, /* bool: true or false */
-    KEY_CHOICE, /* an enum: the index of a word in `choices` */
-    KEY_WORD,   /* char *: one of `choices` */
-    KEY_TEXT,   /* char *: at most `maximum` bytes of UTF-8 */
-    KEY_POINTS, /* source.points */
-    KEY_LIST    /* sweep.values */
+    KEY_NUMBER,  /* double */
+    KEY_COUNT,   /* int64_t */
+    KEY_SWITCH,  /* bool: true or false */
+    KEY_CHOICE,  /* an enum: the index of a word in `choices` */
+    KEY_WORD,    /* char *: one of `choices` */
+    KEY_TEXT,    /* char *: at most `maximum` bytes of UTF-8 */
+    KEY_POINTS,  /* source.points */
+    KEY_NUMBERS, /* struct number_list: each number within the range */
+    KEY_LIST     /* sweep.values */
 };
 
 struct scenario_key {

@@ -7,6 +7,7 @@
 #define MOTEHOUND_SIM_SCENARIO_H
 
 #include "motehound/election.h"
+#include "motehound/fusion.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,7 +18,8 @@ enum path_kind {
     PATH_ARCS,      /* two circular arcs of 90 degrees, turning left then right, from the first point to the second */
     PATH_STILL,     /* stays at the first point for duration_s */
     PATH_GAUSS_MARKOV, /* struct target's random walk for duration_s, its own for every seed */
-    PATH_NONE          /* there is no source: for duration_s the nodes report synthetic traffic */
+    PATH_WHITE_ACCELERATION, /* at constant velocity but for struct target's accelerations, for duration_s, its own for every seed */
+    PATH_NONE                /* there is no source: for duration_s the nodes report synthetic traffic */
 };
 
 struct waypoint {
@@ -36,7 +38,14 @@ enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
 
 enum resampling_kind { RESAMPLING_PRC, RESAMPLING_SYSTEMATIC };
 
-enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE };
+enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE, LAYOUT_RINGS };
+
+enum { SCENARIO_NUMBERS_MAX = 16 };
+
+struct number_list {
+    double values[SCENARIO_NUMBERS_MAX];
+    unsigned count;
+};
 
 struct scenario {
     char *name;        /* of the experiment */
@@ -56,10 +65,13 @@ struct scenario {
         double diffusion_m2ps; /* D of the field (the tracker has its own) */
     } source;
     struct {
-        double speed_mph;      /* mean speed of PATH_GAUSS_MARKOV */
-        double speed_sd;       /* of the speed, as a share of its mean */
-        double heading_sd_rad; /* of the heading */
-        double memory;         /* of both from step to step: 0 draws them anew, 1 keeps them */
+        double speed_mph;                      /* mean speed of PATH_GAUSS_MARKOV */
+        double speed_sd;                       /* of the speed, as a share of its mean */
+        double heading_sd_rad;                 /* of the heading */
+        double memory;                         /* of both from step to step: 0 draws them anew, 1 keeps them */
+        double x_m, y_m, vx_mps, vy_mps;       /* mean start of PATH_WHITE_ACCELERATION ... */
+        double position_sd_m, velocity_sd_mps; /* ... and sd of each coordinate */
+        double acceleration_x_mps2, acceleration_y_mps2; /* sd of its accelerations */
     } target;
     struct {
         int64_t nodes;
@@ -70,7 +82,7 @@ struct scenario {
         double
             density; /* mean number of nodes within sensor.range_m of a place, which then gives the field; 0: field.* does */
         double sink_x_m, sink_y_m;
-        char *protocol; /* collection, direct, cluster or chatter */
+        char *protocol; /* collection, direct, cluster, fixed or chatter */
         bool ideal;     /* clusters without frames: nothing is lost, collides or takes time */
     } network;
     struct {
@@ -82,6 +94,20 @@ struct scenario {
         int64_t least_answers; /* fewer than so many nodes that measure the target bring about an election */
         double watch_s;        /* a node that has heard of no track for a while looks for a target itself this often */
     } protocol;
+    struct {
+        struct number_list nodes;             /* of each cluster of LAYOUT_RINGS */
+        double ring_m;                        /* radius */
+        struct number_list range_variance_m2; /* of each cluster's sensors */
+        int64_t every;                        /* sampling instants between samples of the fastest nodes */
+        int64_t rates;                        /* the slowest take so many times as long */
+        int64_t shared;                       /* nodes of the next cluster that one hears too */
+    } clusters;
+    struct {
+        enum mh_fusion_rule rule;
+        double report_s;    /* between reports of the clusters to the centre */
+        double report_loss; /* probability that one is lost; of an ideal network */
+        double keep_s;      /* a silent cluster's last report is predicted for so long */
+    } fusion;
     struct {
         int64_t sources; /* nodes that report once in sensor.interval_s where source.path is none */
     } traffic;
@@ -96,6 +122,7 @@ struct scenario {
         double outage_start_s, outage_s; /* no reading of any node comes in this time; 0, 0 for none */
         double range_m;                  /* of QUANTITY_RANGE: how far a target is detected */
         double range_noise_m;            /* sd of a range */
+        double noise_correlation;        /* of the noise of two ranges of an instant */
         bool noisy_detection;            /* by the noisy range, not the true one */
     } sensor;
     struct {
@@ -166,6 +193,7 @@ struct scenario {
         int64_t particles;               /* pftl, msl */
         enum resampling_kind resampling; /* pftl */
         bool literal;                    /* pftl: the region widens as published */
+        double ukf_alpha;                /* cv_ukf: spread of the sigma points */
         double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */
     } tracker;
     struct {

@@ -21,8 +21,8 @@ struct raw {
     char *values[KEYS_MAX];
     struct raw_point *points;
     unsigned points_count;
-    char **list;
-    unsigned list_count;
+    char **lists[KEYS_MAX];
+    unsigned list_counts[KEYS_MAX];
 };
 
 static const cyaml_schema_field_t point_fields[] = {
@@ -46,17 +46,21 @@ struct schema {
     cyaml_schema_value_t root;
 };
 
+static bool is_list(const struct scenario_key *key) { return key->type == KEY_LIST || key->type == KEY_NUMBERS; }
+
 static cyaml_schema_field_t field_of(size_t index, const char *name)
 {
     const cyaml_schema_field_t points = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
                                                              points, &point_schema, 1, CYAML_UNLIMITED);
-    const cyaml_schema_field_t list = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
-                                                           list, &text_schema, 1, CYAML_UNLIMITED);
+    cyaml_schema_field_t list = CYAML_FIELD_SEQUENCE_COUNT("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
+                                                           lists[0], list_counts[0], &text_schema, 1, CYAML_UNLIMITED);
     cyaml_schema_field_t field =
         CYAML_FIELD_STRING_PTR("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw, values[0], 0, CYAML_UNLIMITED);
     if (scenario_keys[index].type == KEY_POINTS) {
         field = points;
-    } else if (scenario_keys[index].type == KEY_LIST) {
+    } else if (is_list(&scenario_keys[index])) {
+        list.data_offset = (uint32_t)(offsetof(struct raw, lists) + index * sizeof(char **));
+        list.count_offset = (uint32_t)(offsetof(struct raw, list_counts) + index * sizeof(unsigned));
         field = list;
     } else {
         field.data_offset = (uint32_t)(offsetof(struct raw, values) + index * sizeof(char *));
@@ -262,20 +266,20 @@ static char *points_text(const char *yaml, size_t length, const char *name, cons
     return text;
 }
 
-static char *list_text(const char *name, const struct raw *raw, char *error, size_t error_size)
+static char *list_text(const char *name, char **list, unsigned count, char *error, size_t error_size)
 {
     size_t size = 1;
-    for (unsigned i = 0; i < raw->list_count; i++) {
-        size += strlen(raw->list[i]) + 1;
+    for (unsigned i = 0; i < count; i++) {
+        size += strlen(list[i]) + 1;
     }
     char *text = calloc(size, 1);
     if (text == NULL) {
         fail(error, error_size, "%s: no memory", name);
         return NULL;
     }
-    for (unsigned i = 0; i < raw->list_count; i++) {
+    for (unsigned i = 0; i < count; i++) {
         const size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", i > 0 ? "," : "", raw->list[i]);
+        snprintf(text + used, size - used, "%s%s", i > 0 ? "," : "", list[i]);
     }
     return text;
 }
@@ -289,11 +293,10 @@ static int apply(const char *yaml, size_t length, const char *name, const struct
         const char *value = raw->values[i];
         if (key->type == KEY_POINTS && raw->points != NULL) {
             value = made = points_text(yaml, length, name, raw, error, error_size);
-        } else if (key->type == KEY_LIST && raw->list != NULL) {
-            value = made = list_text(name, raw, error, error_size);
+        } else if (raw->lists[i] != NULL) {
+            value = made = list_text(name, raw->lists[i], raw->list_counts[i], error, error_size);
         }
-        const bool made_badly = made == NULL && (key->type == KEY_POINTS ? raw->points != NULL
-                                                                         : key->type == KEY_LIST && raw->list != NULL);
+        const bool made_badly = made == NULL && (key->type == KEY_POINTS ? raw->points != NULL : raw->lists[i] != NULL);
         char reason[600], problem[8];
         const int status =
             made_badly || value == NULL ? 0 : scenario_set(scenario, key->path, value, reason, sizeof reason);

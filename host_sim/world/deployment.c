@@ -1,6 +1,7 @@
 #include "world/deployment.h"
 
 #include "engine/random.h"
+#include "world/clusters.h"
 #include "world/recipe.h"
 
 #include <math.h>
@@ -82,6 +83,15 @@ static void lay_grid(struct deployment *deployment, const struct scenario *scena
     }
 }
 
+static void lay_rings(struct deployment *deployment, const struct scenario *scenario)
+{
+    for (size_t i = 0; i < deployment->count; i++) {
+        const struct point place = clustered_place(scenario, i);
+        deployment->nodes[i].x_m = place.x_m;
+        deployment->nodes[i].y_m = place.y_m;
+    }
+}
+
 static int by_id(const void *a, const void *b)
 {
     const uint32_t left = ((const struct recorded_node *)a)->id, right = ((const struct recorded_node *)b)->id;
@@ -140,6 +150,9 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
         break;
     case LAYOUT_HASHED:
         lay_hashed(deployment, field.width_m, field.height_m, seed);
+        break;
+    case LAYOUT_RINGS:
+        lay_rings(deployment, scenario);
         break;
     case LAYOUT_FILE:
         break;

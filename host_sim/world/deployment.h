@@ -23,6 +23,7 @@ struct deployment {
  *   two equally square ones the one with fewer columns: 32 x 40 for 1,280 in a square). Where that leaves cells longer than
  *   2 : 1 they are made square and the last row has fewer nodes, evenly spread.
  * hashed: node i = (width U(seed, 1, i), height U(seed, 2, i)) of recipe.h.
+ * rings: as clusters.h says.
  * file: the nodes of scenario->network.file, sorted.
  *
  * Returns 0, or -1 with one line in `error` (a file that cannot be used, no memory) and nothing to free. */

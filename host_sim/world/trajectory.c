@@ -1,5 +1,6 @@
 #include "world/trajectory.h"
 
+#include "world/accelerated.h"
 #include "world/mobility.h"
 
 #include <math.h>
@@ -15,7 +16,9 @@ struct point leg_position(const struct leg *leg, double elapsed_s)
     const double half_turn = 0.5 * leg->curvature_radpm * way;
     const double chord = half_turn == 0 ? way : way * sin(half_turn) / half_turn;
     const double direction = leg->heading_rad + half_turn;
-    return (struct point){leg->start.x_m + chord * cos(direction), leg->start.y_m + chord * sin(direction)};
+    const double half_square = elapsed_s * elapsed_s / 2;
+    return (struct point){leg->start.x_m + chord * cos(direction) + leg->acceleration.x_m * half_square,
+                          leg->start.y_m + chord * sin(direction) + leg->acceleration.y_m * half_square};
 }
 
 /* The last leg that has begun, or the first. */
@@ -44,9 +47,12 @@ struct point trajectory_velocity(const struct trajectory *trajectory, double tim
     const struct leg *leg = leg_at(trajectory, time_s);
     const double elapsed_s = time_s - leg->start_s;
     const bool on_its_way = elapsed_s >= 0 && elapsed_s <= leg->duration_s;
-    const double speed_mps = on_its_way ? leg->speed_mps : 0;
-    const double heading_rad = leg->heading_rad + leg->curvature_radpm * speed_mps * elapsed_s;
-    return (struct point){speed_mps * cos(heading_rad), speed_mps * sin(heading_rad)};
+    if (!on_its_way) {
+        return (struct point){0, 0};
+    }
+    const double heading_rad = leg->heading_rad + leg->curvature_radpm * leg->speed_mps * elapsed_s;
+    return (struct point){leg->speed_mps * cos(heading_rad) + leg->acceleration.x_m * elapsed_s,
+                          leg->speed_mps * sin(heading_rad) + leg->acceleration.y_m * elapsed_s};
 }
 
 double trajectory_length_m(const struct trajectory *trajectory)
@@ -119,13 +125,35 @@ static int make_walk(struct trajectory *trajectory, const struct scenario *scena
     return 0;
 }
 
+/* ... and with one on which it would go on. */
+static int make_accelerated(struct trajectory *trajectory, const struct scenario *scenario, uint64_t seed, size_t steps)
+{
+    const struct accelerated target = accelerated_of(scenario);
+    struct accelerated_state *states = malloc((steps + 1) * sizeof *states);
+    if (!states) {
+        return -1;
+    }
+    accelerated_states(&target, seed, steps, states);
+    for (size_t n = 0; n <= steps; n++) {
+        const struct accelerated_state *s = &states[n];
+        append(trajectory, (struct leg){.duration_s = n < steps ? target.interval_s : 0,
+                                        .speed_mps = hypot(s->velocity.x_m, s->velocity.y_m),
+                                        .start = s->at,
+                                        .heading_rad = atan2(s->velocity.y_m, s->velocity.x_m),
+                                        .acceleration = s->acceleration});
+    }
+    free(states);
+    return 0;
+}
+
 int trajectory_make(struct trajectory *trajectory, const struct scenario *scenario, uint64_t seed, char *error,
                     size_t error_size)
 {
     const struct waypoint *points = scenario->source.points;
     const unsigned count = scenario->source.points_count;
     const double speed = scenario->source.speed_mps;
-    const bool walks = scenario->source.path == PATH_GAUSS_MARKOV;
+    const bool accelerates = scenario->source.path == PATH_WHITE_ACCELERATION;
+    const bool walks = accelerates || scenario->source.path == PATH_GAUSS_MARKOV;
     const size_t steps = walks ? scenario_steps(scenario) : 0;
     const unsigned least = walks ? 0 : scenario->source.path == PATH_STILL ? 1 : 2;
     if (count < least) {
@@ -144,7 +172,8 @@ int trajectory_make(struct trajectory *trajectory, const struct scenario *scenar
         }
     }
     *trajectory = (struct trajectory){.legs = calloc((walks ? steps : count) + 1, sizeof *trajectory->legs)};
-    if (!trajectory->legs || (walks && make_walk(trajectory, scenario, seed, steps) != 0)) {
+    if (!trajectory->legs ||
+        (walks && (accelerates ? make_accelerated : make_walk)(trajectory, scenario, seed, steps) != 0)) {
         trajectory_free(trajectory);
         snprintf(error, error_size, "out of memory");
         return -1;
@@ -161,6 +190,7 @@ int trajectory_make(struct trajectory *trajectory, const struct scenario *scenar
                (struct leg){.duration_s = scenario->source.duration_s, .start = {points[0].x_m, points[0].y_m}});
         break;
     case PATH_GAUSS_MARKOV:
+    case PATH_WHITE_ACCELERATION:
     case PATH_NONE:
         break;
     }

@@ -224,6 +224,9 @@ static void other_trackers_are_refused(void)
     TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "source.duration_s", "10", error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "tracker.name", "luo", error, sizeof error));
     TEST_ASSERT_EQUAL_INT(-1, ideal_run(&scenario, 1, &observer, NULL, &counters, error, sizeof error));
+    TEST_ASSERT_EQUAL_STRING("network.ideal: no such thing for network.protocol collection", error);
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "network.protocol", "cluster", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, ideal_run(&scenario, 1, &observer, NULL, &counters, error, sizeof error));
     TEST_ASSERT_EQUAL_STRING("tracker.name: `luo`, expected range, pftl, msl or centroid in an ideal network", error);
     scenario_free(&scenario);
 }

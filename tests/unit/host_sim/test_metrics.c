@@ -146,7 +146,7 @@ static void metrics_have_names_of_their_own(void)
             TEST_ASSERT_TRUE_MESSAGE(strcmp(metric_names[i], metric_names[j]) != 0, metric_names[i]);
         }
     }
-    TEST_ASSERT_EQUAL_STRING("nees_median", metric_names[METRIC_ERRORS_COUNT - 1]);
+    TEST_ASSERT_EQUAL_STRING("local_anees_4", metric_names[METRIC_ERRORS_COUNT - 1]);
     TEST_ASSERT_EQUAL_STRING(total_names[0], metric_names[METRIC_FIRST_TOTAL]);
 }
 
@@ -226,6 +226,53 @@ static void the_normalised_error_is_of_all_states_that_are_stated(void)
     setUp();
     run_of(10, with_velocity);
     NEAR(2.5, values[METRIC_NEES_MEDIAN]);
+}
+
+/* Off by 3 m to 6 m in turns at every second instant; the third cluster by twice as much, what it claims is 1 m each way. */
+static void fused(const struct observer *observer, int i)
+{
+    const struct truth truth = {.time_s = i, .x_m = i, .present = true};
+    const float off = (float)(3 + i / 2 % 2 * 3);
+    const struct mh_estimate centre = {.position = {(float)i + off, 0},
+                                       .covariance = {4, 0, 5},
+                                       .covariance_more = {0, 0, 1, 0, 0, 0, 1},
+                                       .states = 4};
+    const struct mh_estimate local = {.position = {(float)i + 2 * off, 0},
+                                      .covariance = {1, 0, 1},
+                                      .covariance_more = {0, 0, 1, 0, 0, 0, 1},
+                                      .states = 4};
+    observer->truth(observer->context, &truth);
+    if (i % 2 == 1) {
+        observer->local(observer->context, i, 2, 40, &local, &truth);
+        observer->estimate(observer->context, i, 50, &centre, &truth, &truth);
+    }
+}
+
+static void fixed_clusters_are_judged_over_the_runs(void)
+{
+    struct errors pooled = {0};
+    double both[METRIC_ERRORS_COUNT];
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "network.protocol", "fixed", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&scenario, "metrics.skip_first", "2", error, sizeof error));
+    run_of(20, fused); /* 3, 6, 3 ... at instants 1, 3 ... 19 */
+    NEAR(45, values[METRIC_SMSE_M]);
+    NEAR(6, values[METRIC_POSITION_RMSE_WORST_M]);
+    NEAR(sqrt(22.5), values[METRIC_POSITION_RMSE_M]);
+    NEAR(22.5 / 4, values[METRIC_ANEES]);
+    NEAR(sqrt(9 / 22.5), values[METRIC_CLAIMED_OVER_RMSE]);
+    NEAR(2 * sqrt(22.5), values[METRIC_LOCAL_POSITION_RMSE_M_3]);
+    NEAR(90, values[METRIC_LOCAL_ANEES_3]);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_LOCAL_ANEES_1]) && isnan(values[METRIC_LOCAL_POSITION_RMSE_M_4]));
+    TEST_ASSERT_EQUAL_INT(0, errors_append(&pooled, &errors));
+    TEST_ASSERT_EQUAL_INT(0, errors_append(&pooled, &errors));
+    for (size_t i = 0; i < pooled.squares.count; i++) { /* a third run without any error */
+        pooled.counts.values[i] += i % 2 == 1;
+    }
+    metrics_of_errors(&pooled, both);
+    NEAR(45 * sqrt(2.0 / 3), both[METRIC_SMSE_M]);
+    NEAR(6 * sqrt(2.0 / 3), both[METRIC_POSITION_RMSE_WORST_M]);
+    NEAR(2 * sqrt(22.5), both[METRIC_LOCAL_POSITION_RMSE_M_3]);
+    errors_free(&pooled);
 }
 
 static void blind(const struct observer *observer, int i) { tell(observer, i, false, 1, 2, 1, 0); }
@@ -351,6 +398,7 @@ int main(void)
     RUN_TEST(energy_metrics_cover_states_and_causes);
     RUN_TEST(what_a_tracker_does_not_state_does_not_apply);
     RUN_TEST(the_normalised_error_is_of_all_states_that_are_stated);
+    RUN_TEST(fixed_clusters_are_judged_over_the_runs);
     RUN_TEST(without_truth_there_are_no_errors);
     RUN_TEST(a_track_is_lost_after_so_many_successive_errors_of_one_target);
     RUN_TEST(a_ranged_target_is_judged_by_its_sensing_range);

@@ -52,6 +52,7 @@ static void a_file_sets_what_it_names_and_leaves_the_rest(void)
                                         "  speed_mps: 2.25\n"
                                         "network: {nodes: 640, layout: grid}\n"
                                         "tracker: {name: luo, nonlinear: true}\n"
+                                        "clusters: {nodes: [2, 7], range_variance_m2: [0.5, 1e-2]}\n"
                                         "sweep: {key: network.nodes, values: [640, 960]}\n"),
                                   error);
     TEST_ASSERT_EQUAL_STRING("x", scenario.name);
@@ -68,6 +69,9 @@ static void a_file_sets_what_it_names_and_leaves_the_rest(void)
     TEST_ASSERT_TRUE(scenario.tracker.nonlinear);
     TEST_ASSERT_EQUAL_UINT(2, scenario.sweep.values_count);
     TEST_ASSERT_EQUAL_STRING("960", scenario.sweep.values[1]);
+    TEST_ASSERT_EQUAL_UINT(2, scenario.clusters.nodes.count);
+    assert_number("7", scenario.clusters.nodes.values[1]);
+    assert_number("0.01", scenario.clusters.range_variance_m2.values[1]);
     assert_number("80", scenario.field.width_m);
     assert_number("0.2", scenario.tracker.chi);
 }
@@ -95,10 +99,15 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation
         {"source: {points: [{x_m: 1}]}", "a.yaml:1: source.points: expected a key y_m", ""},
         {"source: {points: [{x_m: 1, y_m: 2, z: 3}]}", "a.yaml:1: source.points.z: unknown key", ""},
         {"source: {points: []}", "a.yaml:1: source.points: expected at least one entry, found none", ""},
+        {"clusters: {nodes: [3, 4, x]}",
+         "a.yaml:1: clusters.nodes: expected 1 to 16 numbers 1 to 32 `a, b, ...`, found '3,4,x'", ""},
+        {"clusters: {nodes: [3, 33]}", "a.yaml:1: clusters.nodes: expected 1 to 16 numbers 1 to 32", "'3,33'"},
+        {"clusters: {nodes: 3}", "a.yaml:1: clusters.nodes: expected a list, found a single value", ""},
         {"network: {nodes: 3}", "a.yaml:1: network.nodes: expected a whole number 4 to 1000000, found '3'", ""},
         {"network: {nodes: 4.5}", "a.yaml:1: network.nodes: expected a whole number", "'4.5'"},
         {"tracker: {name: kalman}",
-         "a.yaml:1: tracker.name: expected one of diffusion/luo/range/pftl/msl/centroid, found 'kalman'", ""},
+         "a.yaml:1: tracker.name: expected one of diffusion/luo/range/pftl/msl/centroid/cv_ukf/cv_ekf, found 'kalman'",
+         ""},
         {"tracker: {nonlinear: yes}", "a.yaml:1: tracker.nonlinear: expected true or false, found 'yes'", ""},
         {"name: a\nname: b", "a.yaml:1: name: expected once, found twice", ""},
         {"name: a\n---\nname: b", "a.yaml:1: expected one document, found more", ""},
