@@ -55,6 +55,9 @@ struct mh_gaussian_root {
 /* L from P. n^3 / 6 multiplications, n roots. Errors: as of mh_gaussian_check, which is this. */
 enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian);
 
+/* c = L' h: the gradient h of a scalar with respect to the state -> with respect to L^-1 x, which has the covariance I. */
+void mh_gaussian_root_gradient(const struct mh_gaussian_root *root, const mh_real *h, mh_real *c);
+
 /* One scalar measured: c = L' h for its gradient h, its innovation, its noise variance. P becomes P - P h h' P / (h' P h + variance), as
  * L becomes L T with T T' = I - c c' / (c' c + variance) and T lower triangular (Carlson, AIAA Journal 11, 1973, pp. 1259-1265, there with upper triangles):
  * nothing is subtracted from a variance. n^2 + 4 n multiplications, n roots, 2 n divisions. What is not finite shows in mh_gaussian_compose. */

@@ -4,11 +4,12 @@
  * by Wan and van der Merwe (2000). What a function f makes of them is used as symmetric and second differences,
  *
  *     c_i = (f(X+_i) - f(X-_i)) / (2 gamma),   d_i = f(X+_i) + f(X-_i) - 2 f(x),   D = sum d_i / (2 gamma^2)
- *     mean = f(x) + D,   cov(x, f) = sum column_i(L) c_i',   var f = sum c_i c_i' + sum d_i d_i' / (4 gamma^2) + (beta - alpha^2) D D'
+ *     mean = f(x) + D,   cov(x, f) = sum column_i(L) c_i'
+ *     var f = sum c_i c_i' + sum (d_i - mean d) (d_i - mean d)' / (4 gamma^2) + (beta + alpha^2 kappa / n) D D'
  *
- * which are the usual weighted sums to the letter, but with no weight that is negative or large, so that nothing cancels where alpha is small. And they say
- * when the UKF keeps its covariance positive definite by construction: what remains of var f beside sum c_i c_i' is not negative for any f if
- * alpha^2 kappa + n beta >= 0. An update is then that of a linear measurement with gradient L'^-1 c and that remainder as further noise
+ * which are the usual weighted sums to the letter, but without a negative or large weight, so that nothing cancels where alpha is small. And they say when
+ * a UKF keeps its covariance positive definite by construction: if beta + alpha^2 kappa / n >= 0, what var f has beside sum c_i c_i' is that
+ * of a further noise, for any f. An update is then that of a linear measurement with the gradient c with respect to L^-1 x and that noise
  * (mh_gaussian_root_take): P stays L L', as in a square-root UKF.
  *
  * No function keeps anything between calls: any number of filters run side by side.
@@ -32,7 +33,7 @@
 struct mh_ukf_weights {
     mh_real alpha; /* 0.1 to 1: how far out the points are */
     mh_real beta;  /* what is known of the distribution's kurtosis: 2 for a Gaussian */
-    mh_real kappa; /* n + kappa >= 1/2, and alpha^2 kappa + n beta >= 0 */
+    mh_real kappa; /* n + kappa >= 1/2, beta + alpha^2 kappa / n >= 0 */
 };
 
 /* x = E f(x), P = cov f(x) + Q. Q packed, positive semidefinite. For a linear f exactly F x and F P F' + Q (mh_gaussian_predict does that in a third of

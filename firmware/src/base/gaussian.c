@@ -176,6 +176,18 @@ enum mh_status mh_gaussian_reduction(const struct mh_gaussian *before, const str
     return MH_OK;
 }
 
+void mh_gaussian_root_gradient(const struct mh_gaussian_root *root, const mh_real *h, mh_real *c)
+{
+    const mh_real *row = root->L;
+    for (uint_fast8_t i = 0; i < root->n; i++) {
+        c[i] = 0;
+        for (uint_fast8_t j = 0; j <= i; j++) {
+            c[j] += row[j] * h[i];
+        }
+        row += i + 1;
+    }
+}
+
 void mh_gaussian_root_take(struct mh_gaussian_root *root, const mh_real *c, mh_real innovation, mh_real variance)
 {
     const uint8_t n = root->n;
