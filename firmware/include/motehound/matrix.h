@@ -26,7 +26,7 @@ enum mh_status mh_cholesky_factor(int n, mh_real *a);
 
 /* The same, but a pivot that is lost in rounding, below MH_PIVOT_FLOOR of its diagonal element, is raised to that, as if the diagonal element
  * had been larger: the factor of A + D, D diagonal and not negative. `*raised`: whether D is not zero. Errors: MH_ERR_SINGULAR (a diagonal element is
- * not positive or not finite, or a pivot is further below zero than rounding explains: A is indefinite); `a` is then half overwritten. */
+ * not positive or not finite, or a pivot is further below zero than rounding explains, 16 times that: A is indefinite); `a` is then half overwritten. */
 #define MH_PIVOT_FLOOR (1.0f / 1048576.0f) /* 16 units in the last place */
 enum mh_status mh_cholesky_factor_raised(int n, mh_real *a, bool *raised);
 

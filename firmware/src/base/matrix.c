@@ -45,7 +45,7 @@ enum mh_status mh_cholesky_factor(int n, mh_real *a)
 enum mh_status mh_cholesky_factor_raised(int n, mh_real *a, bool *raised)
 {
     *raised = false;
-    return factor(n, a, MH_PIVOT_FLOOR, -MH_PIVOT_FLOOR, raised);
+    return factor(n, a, MH_PIVOT_FLOOR, -16.0f * MH_PIVOT_FLOOR, raised);
 }
 
 void mh_cholesky_multiply(int n, mh_real *l)

@@ -18,6 +18,10 @@ static inline mh_real draw(void)
     return (mh_real)(int32_t)(seed >> 8) * (2.0f / 16777216.0f) - 1.0f;
 }
 
+/* where there is no sinf, sin is of float (AVR) */
+static inline mh_real sine(mh_real angle) { return (mh_real)sinf(angle); }
+static inline mh_real cosine(mh_real angle) { return (mh_real)cosf(angle); }
+
 /* x at random, P = B B' + I / 10 */
 static inline void draw_gaussian(struct mh_gaussian *g, uint8_t n)
 {
@@ -112,7 +116,8 @@ static inline enum mh_status predict_gas(const void *context, uint16_t k, const 
 {
     const struct gas *gas = context;
     const struct mh_plume plume = {30.0f, 1.0f, {1, 0}};
-    const struct mh_vec2 sensor = {430.0f + 12.0f * (mh_real)k, 30.0f * cosf(1.3f * (mh_real)k)}, source = {x[0], x[1]};
+    const struct mh_vec2 sensor = {430.0f + 12.0f * (mh_real)k, 30.0f * cosine(1.3f * (mh_real)k)},
+                         source = {x[0], x[1]};
     const mh_real rate = gas->logarithmic ? mh_exp(x[2]) : x[2];
     struct mh_vec2 by_source;
     mh_real unit;
@@ -129,16 +134,16 @@ static inline enum mh_status predict_gas(const void *context, uint16_t k, const 
 /* The prior and what was measured; `gas` is the observations' memory. */
 static inline struct mh_observations gas_begin(struct gas *gas, struct mh_gaussian *prior, bool logarithmic)
 {
-    const mh_real truth[3] = {50, 0, logarithmic ? logf(30) : 30};
-    const mh_real s2 = logf(1 + 0.36f); /* of ln q, by moments: mean 50, standard deviation 30 */
+    const mh_real truth[3] = {50, 0, logarithmic ? mh_log(30) : 30};
+    const mh_real s2 = mh_log(1 + 0.36f); /* of ln q, by moments: mean 50, standard deviation 30 */
     const struct mh_observations observations = {GAS_SENSORS, gas->z, gas->variance, gas, predict_gas, NULL};
     const struct mh_gaussian nominal = {
-        3, {250, 0, logarithmic ? logf(50) - s2 / 2 : 50}, {22500, 0, 14400, 0, 0, logarithmic ? s2 : 900}};
+        3, {250, 0, logarithmic ? mh_log(50) - s2 / 2 : 50}, {22500, 0, 14400, 0, 0, logarithmic ? s2 : 900}};
     *prior = nominal;
     gas->logarithmic = logarithmic;
     for (uint16_t k = 0; k < GAS_SENSORS; k++) {
         predict_gas(gas, k, truth, &gas->z[k], NULL);
-        gas->z[k] += 1e-4f * sinf(2.0f * (mh_real)k + 1.0f);
+        gas->z[k] += 1e-4f * sine(2.0f * (mh_real)k + 1.0f);
         gas->variance[k] = 1e-8f;
     }
     return observations;
@@ -179,7 +184,7 @@ static inline struct mh_observations cluster_begin(const struct cluster *cluster
     places->at = cluster->at;
     for (uint16_t k = 0; k < cluster->count; k++) {
         predict_range(places, k, truth, &z[k], NULL);
-        z[k] += 0.1f * sinf(1.0f + 2.0f * (mh_real)k);
+        z[k] += 0.1f * sine(1.0f + 2.0f * (mh_real)k);
         variance[k] = cluster->variance;
     }
     return observations;

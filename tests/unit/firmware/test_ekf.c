@@ -107,12 +107,12 @@ static void linear_is_kalmans(void)
 static enum mh_status to_cartesian(const void *context, const mh_real *x, mh_real *next, mh_real *F)
 {
     (void)context;
-    next[0] = x[0] * cosf(x[1]);
-    next[1] = x[0] * sinf(x[1]);
+    next[0] = x[0] * cosine(x[1]);
+    next[1] = x[0] * sine(x[1]);
     if (F) {
-        F[0] = cosf(x[1]);
+        F[0] = cosine(x[1]);
         F[1] = -next[1];
-        F[2] = sinf(x[1]);
+        F[2] = sine(x[1]);
         F[3] = next[0];
     }
     return MH_OK;
@@ -180,7 +180,7 @@ static void bearings_wrap(void)
 static enum mh_status bad_model(const void *context, uint16_t k, const mh_real *x, mh_real *z, mh_real *gradient)
 {
     *z = x[0];
-    gradient[0] = k == 1 ? NAN : 1;
+    gradient[0] = k == 1 ? (mh_real)NAN : 1;
     gradient[1] = 0;
     return k == 1 ? *(const enum mh_status *)context : MH_OK;
 }

@@ -100,8 +100,8 @@ static void finds_the_minimum(void)
         }
     }
     TEST_ASSERT_TRUE(f < least);
-    TEST_ASSERT_FLOAT_WITHIN(3 * sqrtf(g.P[MH_PACKED(0, 0)]), truth[0], g.x[0]);
-    TEST_ASSERT_FLOAT_WITHIN(3 * sqrtf(g.P[MH_PACKED(2, 2)]), truth[2], g.x[2]);
+    TEST_ASSERT_FLOAT_WITHIN(3 * mh_sqrt(g.P[MH_PACKED(0, 0)]), truth[0], g.x[0]);
+    TEST_ASSERT_FLOAT_WITHIN(3 * mh_sqrt(g.P[MH_PACKED(2, 2)]), truth[2], g.x[2]);
     TEST_ASSERT_FLOAT_WITHIN(1e-5f, 1, g.P[MH_PACKED(1, 1)]); /* nothing was learned of the velocity */
 }
 
@@ -162,7 +162,7 @@ static enum mh_status barred(const void *context, uint16_t k, const mh_real *x, 
 {
     const struct barrier *barrier = context;
     (void)k;
-    *z = x[0] > 3 ? NAN : x[0];
+    *z = x[0] > 3 ? (mh_real)NAN : x[0];
     gradient[0] = 1;
     return x[0] > 3 ? barrier->status : MH_OK;
 }

@@ -150,7 +150,7 @@ static void as_the_weighted_sums(void)
         for (int p = 0; p < 9; p++) {
             for (int i = 0; i < 4; i++) {
                 const int column = (p - 1) / 2;
-                const mh_real step = p > 0 && i >= column ? sqrtf(n + lambda) * L[MH_PACKED(column, i)] : 0;
+                const mh_real step = p > 0 && i >= column ? mh_sqrt(n + lambda) * L[MH_PACKED(column, i)] : 0;
                 points[p][i] = g.x[i] + (p % 2 ? step : -step);
             }
             predict_range(&places, 0, points[p], &ranges[p], NULL);
@@ -176,7 +176,7 @@ static void as_the_weighted_sums(void)
 }
 
 /* next = (x0^2, x0 x1) */
-static enum mh_status square(const void *context, const mh_real *x, mh_real *next, mh_real *F)
+static enum mh_status squares(const void *context, const mh_real *x, mh_real *next, mh_real *F)
 {
     (void)context;
     (void)F;
@@ -189,7 +189,7 @@ static enum mh_status square(const void *context, const mh_real *x, mh_real *nex
 static void quadratics_have_their_mean(void)
 {
     const struct mh_ukf_weights weights[] = {{1, 2, 0}, {0.1f, 2, 0}, {0.5f, 2, 0}, {1, 0, 1}};
-    const struct mh_transition transition = {NULL, square};
+    const struct mh_transition transition = {NULL, squares};
     const mh_real Q[3] = {0.25f, 0, 0.25f};
     for (int w = 0; w < 4; w++) {
         struct mh_gaussian g = {2, {3, -2}, {2, 0.5f, 1}};
@@ -225,7 +225,7 @@ static void diffuse_prior(void)
         }
         /* a curved form is known with one sign or the other at first: what is claimed must hold, however slowly it shrinks */
         for (int i = 0; i < 4; i++) {
-            const mh_real sd = sqrtf(g.P[MH_PACKED(i, i)]);
+            const mh_real sd = mh_sqrt(g.P[MH_PACKED(i, i)]);
             TEST_ASSERT_FLOAT_WITHIN(5 * sd, 0, g.x[i]);
             TEST_ASSERT_TRUE(kind % 2 || sd < 1e-2f);
         }
@@ -240,7 +240,7 @@ static enum mh_status predict_noise(const void *context, uint16_t k, const mh_re
     (void)k;
     (void)x;
     (void)gradient;
-    *z = draw() * expf(23 * draw());
+    *z = draw() * mh_exp(23 * draw());
     return MH_OK;
 }
 
@@ -269,7 +269,7 @@ static void weights_out_of_range_are_refused(void)
     const struct mh_ukf_weights bad[] = {{0.0999f, 2, 0}, {1e-3f, 2, 0}, {0, 2, 0},        {-1, 2, 0},  {1.01f, 2, 0},
                                          {NAN, 2, 0},     {1, NAN, 0},   {1, INFINITY, 0}, {1, 2, NAN}, {1, 2, -1.75f},
                                          {1, 0, -0.1f},   {1, -0.1f, 0}, {0.5f, -0.2f, 1}};
-    const struct mh_transition transition = {NULL, square};
+    const struct mh_transition transition = {NULL, squares};
     const mh_real Q[3] = {1, 0, 1}, z = 1, variance = 1, h[1][4] = {{1, 0}};
     const struct forms forms = {h, 2, 0};
     const struct mh_observations observations = {1, &z, &variance, &forms, predict_form, NULL};
@@ -312,14 +312,14 @@ static void bearings_wrap(void)
 static enum mh_status bad_model(const void *context, uint16_t k, const mh_real *x, mh_real *z, mh_real *gradient)
 {
     (void)gradient;
-    *z = x[0] > 1 && k == 1 ? NAN : 1;
+    *z = x[0] > 1 && k == 1 ? (mh_real)NAN : 1;
     return x[0] > 1 && k == 2 ? *(const enum mh_status *)context : MH_OK;
 }
 
 static enum mh_status bad_motion(const void *context, const mh_real *x, mh_real *next, mh_real *F)
 {
     (void)F;
-    next[0] = next[1] = x[0] > 1 ? NAN : 1;
+    next[0] = next[1] = x[0] > 1 ? (mh_real)NAN : 1;
     return x[0] < 1 ? *(const enum mh_status *)context : MH_OK;
 }
 
@@ -352,15 +352,15 @@ static void bad_input_changes_nothing(void)
     }
     observations.count = MH_STACKED_MAX + 1;
     TEST_ASSERT_EQUAL_INT(MH_ERR_CAPACITY, mh_ukf_update_stacked(&g, &plain, &observations));
-    const struct mh_transition transition = {&told, bad_motion}, squares = {NULL, square};
+    const struct mh_transition transition = {&told, bad_motion}, squared = {NULL, squares};
     const mh_real Q[3] = {1, 0, 1}, bad_Q[3] = {1, NAN, 1};
     TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, mh_ukf_predict(&g, &plain, &transition, Q));
     told = MH_OK;
     TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_ukf_predict(&g, &plain, &transition, Q));
-    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_ukf_predict(&g, &plain, &squares, bad_Q));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_ukf_predict(&g, &plain, &squared, bad_Q));
     TEST_ASSERT_EQUAL_MEMORY(&before, &g, sizeof g);
     g.P[1] = 2;
-    TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_ukf_predict(&g, &plain, &squares, Q));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_ukf_predict(&g, &plain, &squared, Q));
     TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_ukf_update(&g, &plain, &observations));
     TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_ukf_update_stacked(&g, &plain, &observations));
 }
