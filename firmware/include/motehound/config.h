@@ -65,6 +65,15 @@
 #endif
 #endif
 
+/* Sensors that a head of the tracker `gas` works with, those of the saved track and its own neighbours: 20 bytes each, and 12 of stack. When it is full
+ * the one that tells least gives way. And the cells of its grid, which cost time alone. */
+#ifndef MH_GAS_SENSORS_MAX
+#define MH_GAS_SENSORS_MAX (MH_TRACK_BYTES_MAX / 16 + 16)
+#endif
+#ifndef MH_GAS_CELLS
+#define MH_GAS_CELLS 500
+#endif
+
 /* What a cluster head tells a fusion centre of its track, in bytes: at most the mean and two covariances of four states, and a byte. */
 #define MH_SUMMARY_BYTES_MAX 97
 
@@ -250,6 +259,12 @@
 #endif
 #if MH_TRACK_BYTES_MAX < 64 || MH_TRACK_BYTES_MAX > 1900
 #error "MH_TRACK_BYTES_MAX must be 64 to 1900: a constant-velocity filter takes 60, and it travels in at most 31 frames"
+#endif
+#if MH_GAS_SENSORS_MAX < 4 || MH_GAS_SENSORS_MAX > 4096
+#error "MH_GAS_SENSORS_MAX must be 4 to 4096: a place and a rate take three, and the work grows in proportion"
+#endif
+#if MH_GAS_CELLS < 16 || MH_GAS_CELLS > 10000
+#error "MH_GAS_CELLS must be 16 to 10000: a step computes a concentration for each cell and sensor"
 #endif
 #if MH_STATES_MAX < 4 || MH_STATES_MAX > 16
 #error "MH_STATES_MAX must be 4 to 16: position and velocity in the plane are four, and the work grows with the cube"

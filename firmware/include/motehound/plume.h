@@ -26,8 +26,9 @@ struct mh_plume {
  *
  *     dc/ds = c (n / d + u / (2 K) (n - w)),  n = (r - s) / d;  nearer than MH_PLUME_NEAR_M  dc/ds = -c u / (2 K) w
  *
- * `spread_m2` >= 0 is added to the square of the distance: where the source is uncertain, so that a sensor that happens to be near to the estimate is not
- * thought to be next to the source. All metres, finite. Cost: one root, one exponential, one division. Errors: MH_ERR_NOT_FINITE. */
+ * `spread_m2` >= 0 is the variance of the distance where the source is uncertain: 1 / d becomes 1 / sqrt(d^2 + spread), so that a sensor that happens to
+ * be near to the estimate is not thought to be next to the source; the exponential stays. All metres, finite. Cost: one root, one exponential, one
+ * division; with a spread one root more, and one division if there is a gradient. Errors: MH_ERR_NOT_FINITE. */
 enum mh_status mh_plume_model(const struct mh_plume *plume, struct mh_vec2 sensor, struct mh_vec2 source,
                               mh_real spread_m2, mh_real *concentration, struct mh_vec2 *gradient);
 
