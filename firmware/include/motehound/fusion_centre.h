@@ -1,20 +1,22 @@
 /* The fusion centre (centre.h) of clusters that follow one target in the plane, each with a filter of its own: by any rule of fusion.h but MH_FUSION_CENTRAL.
  *
- * **A summary is taken or refused at once.** What heads are told of it:
- * - MH_OK and MH_ERR_REPEATED: acknowledge it. The head may take it for settled (tracker.h, summary_taken).
- * - MH_ERR_TIME: older than what is fused, or further in the future than `keep`; MH_ERR_CAPACITY (increments only): an earlier one of the cluster waits to be fused.
- *   Do not acknowledge it: an increment is not lost, its head goes on counting from its last acknowledged one.
- * - MH_ERR_CORRUPT, MH_ERR_ARGUMENT: do not acknowledge it.
+ * **Estimates** (all rules but the two of increments): the last summary of each cluster, predicted to the time that is fused. So a report that is lost costs
+ * little, and one that comes late still counts. A summary older than config.keep says nothing any more; with keep 0 only those of the very time count.
+ * When none is left the last fused estimate is predicted. Rules of pairs take the clusters in their order.
  *
- * Increments say since when they count. One that begins before the last that was taken of its cluster holds measurements for the second time (its acknowledgement
- * was lost) and is MH_ERR_REPEATED: what is new in it is given up for the sake of honesty. After a summary of another kind than the rule's: MH_ERR_CORRUPT.
+ * **Increments**: the estimate, at first config.start, is predicted from summary to summary, in the order of time and cluster, and each adds to it what it has learned. An
+ * increment waits until it is fused; each cluster has room for one. One that began before the last that its cluster was thanked for holds measurements for the
+ * second time (the thanks were lost): it is MH_ERR_REPEATED, and what is new in it is given up for the sake of honesty.
  *
- * **Silent clusters** (by all rules but the two of increments): their last summary, predicted, stands for them until it is older than `keep`; with keep = 0 only
- * summaries of the very time that is fused count. **Without any** the last fused estimate is predicted (MH_ESTIMATE_COASTED).
+ * **What to tell the heads** of a summary, by what take() returns: MH_OK and MH_ERR_REPEATED are acknowledged (tracker.h, summary_taken). The others are not: MH_ERR_TIME
+ * (before the cluster's last, before what is fused for increments, or more than MH_FUSION_AHEAD after it), MH_ERR_CAPACITY (an increment of the cluster
+ * waits), MH_ERR_CORRUPT (not a summary of the rule's kind), MH_ERR_ARGUMENT (no such cluster). Increments are not lost then: the head counts on from its
+ * last one that was acknowledged.
  *
- * Increments need a prior that centre and heads share, `start` at `start_time`; the other rules do not look at it.
+ * fuse() fails with MH_NONE (no cluster has ever been heard; not with increments) or MH_ERR_TIME (not after the last, with increments not after config.start_time). Estimates: position and velocity with the covariance of all
+ * four; `measurements` = summaries that were new, COASTED if none. What cannot be fused (an increment that takes information away; numbers beyond mh_real) is left out and counted.
  *
- * Estimates: position and velocity with the covariance of all four, `measurements` = summaries joined. The rules of pairs take clusters in their order. */
+ * Cost: docs/costs.md. Several targets need a centre each. */
 #ifndef MOTEHOUND_FUSION_CENTRE_H
 #define MOTEHOUND_FUSION_CENTRE_H
 
@@ -22,26 +24,51 @@
 #include "motehound/summary.h"
 #include "motehound/white_acceleration.h"
 
+/* A summary from further in the future than this after the last fused instant has a wrong time. */
+#define MH_FUSION_AHEAD 600000u
+
 struct mh_fusion_centre_config {
-    enum mh_fusion_rule rule; /* any but MH_FUSION_CENTRAL */
-    uint8_t clusters;         /* 1 to MH_FUSED_MAX */
-    struct mh_place origin;   /* of all coordinates */
-    struct mh_white_acceleration motion;
-    mh_tick keep;             /* see above */
-    struct mh_gaussian start; /* (x, vx, y, vy): the prior of increments ... */
-    mh_tick start_time;       /* ... and its time */
+    enum mh_fusion_rule rule;            /* any but MH_FUSION_CENTRAL. Nominal MH_FUSION_CI */
+    uint8_t clusters;                    /* 1 to MH_FUSED_MAX. Nominal 4 */
+    struct mh_place origin;              /* of all coordinates */
+    struct mh_white_acceleration motion; /* tick 1 to 3,600,000. Nominal 500, (5e-5, 1e-4) */
+    mh_tick keep;                        /* 0 to 3,600,000. Nominal 30,000 */
+    struct mh_gaussian start;            /* (x, vx, y, vy): the prior of increments, which their senders share, ... */
+    mh_tick start_time;                  /* ... and its time */
+};
+
+/* Of summaries. */
+struct mh_fusion_counters {
+    uint32_t taken;
+    uint32_t repeated, late, waiting, corrupt,
+        unknown;    /* refused: in the order REPEATED, TIME, CAPACITY, CORRUPT, ARGUMENT */
+    uint32_t unfit; /* could not be fused */
+};
+
+/* The last summary of a cluster. */
+struct mh_fusion_slot {
+    mh_tick time;
+    bool heard;                                                         /* `time` is set */
+    bool fresh;                                                         /* it has not been fused yet */
+    bool held;                                                          /* the numbers are set */
+    mh_real x[MH_SUMMARY_STATES], P[MH_PACKED_SIZE(MH_SUMMARY_STATES)]; /* or those of an increment */
+    mh_real own[MH_PACKED_SIZE(MH_SUMMARY_STATES)];                     /* the independent part of a split one */
+};
+
+/* The state, in the header so that it can be allocated statically; its members are the centre's own but for the counters. */
+struct mh_fusion_centre {
+    struct mh_fusion_centre_config config;
+    bool fused;   /* `time` is that of an estimate */
+    mh_tick time; /* of the last fusion */
+    struct mh_gaussian state;
+    uint16_t clusters; /* whose increments of `time` are in it */
+    struct mh_fusion_slot slots[MH_FUSED_MAX];
+    struct mh_fusion_counters counters;
 };
 
 extern const struct mh_centre mh_centre_fusion;
 
-/* What has come and what became of it. */
-struct mh_fusion_counters {
-    uint32_t taken, repeated, late, corrupt, unknown;
-};
-
-void mh_fusion_centre_counters(const void *state, struct mh_fusion_counters *counters);
-
-/* Xu's: CI, 4 clusters, origin (0, 0), ticks of 0.5 s, variances 5e-5 and 1e-4, start (10, 0.8, 20, 0.6) with variances (1, 0.04, 1, 0.04) at 0, keep 0. */
+/* Xu's clusters: origin (0, 0, 0), start (10, 0.8, 20, 0.6) with variances (1, 0.04, 1, 0.04) at time 0, and the nominal values above. */
 void mh_fusion_centre_config_default(struct mh_fusion_centre_config *config);
 
 #endif
