@@ -197,6 +197,15 @@
 #endif
 #endif
 
+/* Clusters of the protocol `fixed`, 130 bytes each. */
+#ifndef MH_FIXED_CLUSTERS_MAX
+#ifdef __AVR__
+#define MH_FIXED_CLUSTERS_MAX 4
+#else
+#define MH_FIXED_CLUSTERS_MAX 8
+#endif
+#endif
+
 /* Synchronised time: pairs of local and network time that the line goes through, 8 bytes each, one a round; and neighbours whose messages are
  * stamped, 10 bytes each. */
 #ifndef MH_CLOCK_PAIRS
@@ -301,6 +310,9 @@
 #endif
 #if MH_CLUSTER_MAX < 4 || MH_CLUSTER_MAX > 200
 #error "MH_CLUSTER_MAX must be 4 to 200: a position takes a few ranges, and the list is searched linearly"
+#endif
+#if MH_FIXED_CLUSTERS_MAX < 1 || MH_FIXED_CLUSTERS_MAX > 250
+#error "MH_FIXED_CLUSTERS_MAX must be 1 to 250: a cluster's number travels as a byte"
 #endif
 #if MH_CLOCK_PAIRS < 2 || MH_CLOCK_PAIRS > 32 || MH_CLOCK_NEIGHBOURS < 1 || MH_CLOCK_NEIGHBOURS > 250
 #error                                                                                                                 \

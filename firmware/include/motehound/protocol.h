@@ -53,12 +53,28 @@ struct mh_search_counters {
     uint32_t converged, exhausted; /* searches that were over */
 };
 
+/* What one node or many did in fixed clusters (fixed.h). */
+struct mh_fixed_counters {
+    uint32_t led;         /* times that a node began to lead ... */
+    uint32_t taken_over;  /* ... of these because the head had fallen silent */
+    uint32_t yielded;     /* times that a head gave way to another */
+    uint32_t summaries;   /* sent by heads */
+    uint32_t taken;       /* summaries that the centre has taken */
+    uint32_t repeated;    /* ... that it had, as far as it can tell: the acknowledgement was lost */
+    uint32_t overdue;     /* ... of a time that had been fused already */
+    uint32_t refused;     /* what is no summary, or of no cluster */
+    uint32_t fused;       /* estimates of the centre */
+    uint32_t corrected;   /* tracks that took the centre's feedback, ... */
+    uint32_t uncorrected; /* ... and that did not */
+};
+
 /* What happened to the messages of one node or of many. */
 struct mh_protocol_counters {
     uint32_t lost[MH_LOSSES];
     uint32_t retries; /* messages sent once more, beside what the radio does on its own */
     struct mh_cluster_counters clusters;
     struct mh_search_counters searches;
+    struct mh_fixed_counters fixed;
 };
 
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */
