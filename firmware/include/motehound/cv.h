@@ -71,7 +71,7 @@ struct mh_cv_config {
 /* Of samples, but for the last two. */
 struct mh_cv_counters {
     uint32_t taken;
-    uint32_t reordered; /* of these: later ones had been filtered before */
+    uint32_t reordered; /* of these: later ones, or others of their instant, had been filtered before */
     uint32_t late;      /* refused: at or before what is settled */
     uint32_t early;     /* refused: from after the step */
     uint32_t repeated;  /* refused */

@@ -87,7 +87,7 @@ struct mh_fixed {
     struct mh_link link;
     mh_tick now, time; /* the mote's own time and the network's, of the event that is being handled */
     bool running;      /* the network's time is known */
-    uint8_t set;       /* bit k: timer k is set ... */
+    uint16_t set;      /* bit k: timer k is set ... */
     mh_tick due[MH_FIXED_TIMERS];
     uint16_t hellos, sequence;
     uint8_t role;          /* enum mh_fixed_role */

@@ -12,10 +12,10 @@
 void mh_fixed_set(struct mh_fixed *f, enum mh_fixed_timer timer, mh_tick time)
 {
     f->due[timer] = time;
-    f->set = (uint8_t)(f->set | 1u << timer);
+    f->set = (uint16_t)(f->set | 1u << timer);
 }
 
-void mh_fixed_clear(struct mh_fixed *f, enum mh_fixed_timer timer) { f->set = (uint8_t)(f->set & ~(1u << timer)); }
+void mh_fixed_clear(struct mh_fixed *f, enum mh_fixed_timer timer) { f->set = (uint16_t)(f->set & ~(1u << timer)); }
 
 static bool is_set(const struct mh_fixed *f, int timer) { return (f->set >> timer & 1u) != 0; }
 

@@ -210,9 +210,6 @@ static void insert(struct mh_cv *cv, uint16_t at, const struct mh_measurement *m
     memmove(cv->samples + at + 1, cv->samples + at, (size_t)(cv->count - at) * sizeof cv->samples[0]);
     cv->samples[at] = sample;
     cv->count++;
-    if (at < cv->filtered) {
-        begin_again(cv);
-    }
 }
 
 /* One more sample, of an instant until `time`. Returns false if it is refused. */
@@ -239,7 +236,11 @@ static bool take(struct mh_cv *cv, update_function update, mh_tick time, const s
         cv->counters.repeated++;
         return false;
     }
-    cv->counters.reordered += at < cv->filtered;
+    /* what was filtered already is not what it is to be if it is later, or of the same instant */
+    if (at < cv->filtered || (at > 0 && at == cv->filtered && cv->samples[at - 1].time == m->time)) {
+        cv->counters.reordered++;
+        begin_again(cv);
+    }
     cv->counters.taken++;
     insert(cv, at, m);
     return true;
