@@ -34,6 +34,11 @@ static double of_bounds(const struct simulation_counters *counters, double value
     return counters->bounds.apply ? value : (double)NAN;
 }
 
+static double in_hindsight(const struct simulation_counters *counters, uint64_t value)
+{
+    return counters->bounds.apply && counters->bounds.follow ? (double)value : (double)NAN;
+}
+
 static double energy_mj(const struct simulation_counters *counters, int state, int cause)
 {
     double sum = 0;

@@ -66,9 +66,14 @@
     X(REPORTS_PER_SAMPLE, "reports_per_sample", per_sample(c, of_clusters(c, c->clusters.total.reports)), "positions sent to the sink, by sampling instant") \
     X(ASKED_PER_SAMPLE, "asked_per_sample", per_sample(c, of_clusters(c, c->clusters.total.asked)), "nodes that a head asked to sample, by sampling instant") \
     X(ANSWERED_PER_SAMPLE, "answered_per_sample", per_sample(c, of_clusters(c, c->clusters.total.answered)), "of these such that measured the target") \
-    X(PCRB_M, "pcrb_m", of_bounds(c, c->bounds.pcrb_m), "ranged walk: the posterior Cramer-Rao bound of position_rmse_m")                                 \
-    X(CLUSTERS_LEAST, "clusters_least", of_bounds(c, (double)c->bounds.hand_overs), "ranged target: the least hand-overs in hindsight, between heads that sense it at every instant") \
-    X(REPORTS_LEAST, "reports_least", per_sample(c, of_bounds(c, (double)c->bounds.reports)), "ranged target: the least reports in hindsight that follow it within tracker.tolerance_m, by sampling instant") \
+    X(PCRB_M, "pcrb_m", of_bounds(c, c->bounds.pcrb_m), "ranged walk, or fixed clusters: the posterior Cramer-Rao bound of position_rmse_m")              \
+    X(CCRB_M, "ccrb_m", of_bounds(c, c->bounds.ccrb_m), "fixed clusters: the bound along the run's own path") \
+    X(LOCAL_CCRB_M_1, "local_ccrb_m_1", of_bounds(c, c->bounds.local_ccrb_m[0]), "the same of the first fixed cluster by itself") \
+    X(LOCAL_CCRB_M_2, "local_ccrb_m_2", of_bounds(c, c->bounds.local_ccrb_m[1]), "of the second") \
+    X(LOCAL_CCRB_M_3, "local_ccrb_m_3", of_bounds(c, c->bounds.local_ccrb_m[2]), "of the third") \
+    X(LOCAL_CCRB_M_4, "local_ccrb_m_4", of_bounds(c, c->bounds.local_ccrb_m[3]), "of the fourth") \
+    X(CLUSTERS_LEAST, "clusters_least", in_hindsight(c, c->bounds.hand_overs), "ranged target: the least hand-overs in hindsight, between heads that sense it at every instant") \
+    X(REPORTS_LEAST, "reports_least", per_sample(c, in_hindsight(c, c->bounds.reports)), "ranged target: the least reports in hindsight that follow it within tracker.tolerance_m, by sampling instant") \
     X(CLOCK_ERROR_MEDIAN_MS, "clock_error_median_ms", c->clock_error_median_ms, "median of the error of the motes' network time, over motes and time")\
     X(CLOCK_ERROR_P99_MS, "clock_error_p99_ms", c->clock_error_p99_ms, "99th percentile of the error of the motes' network time")                  \
     X(CLOCK_KNOWN_SHARE, "clock_known_share", c->clock_known_share, "share of the motes and times at which the network time was known")            \

@@ -1,6 +1,7 @@
 #include "trackers.h"
 
 #include "radio/radio.h"
+#include "world/clusters.h"
 #include "world/mobility.h"
 
 #include <math.h>
@@ -125,6 +126,64 @@ static void set_up_centroid(struct tracker_choice *choice, const struct scenario
     choice->config.centroid.sensing_range_m = (mh_real)scenario->sensor.range_m;
 }
 
+/* As the target moves, and at its height: fixed clusters and their centre know all of that. */
+static struct mh_white_acceleration motion_of(const struct scenario *scenario)
+{
+    const double x = scenario->target.acceleration_x_mps2, y = scenario->target.acceleration_y_mps2;
+    return (struct mh_white_acceleration){.tick = (mh_tick)lround(scenario->sensor.interval_s * MH_TICKS_PER_S),
+                                          .variance = {(mh_real)(x * x), (mh_real)(y * y)}};
+}
+
+/* Mean and packed covariance of the start, (x, vx, y, vy). */
+static void start_of(const struct scenario *scenario, mh_real *mean, mh_real *covariance)
+{
+    const double means[MH_CV_STATES] = {scenario->target.x_m, scenario->target.vx_mps, scenario->target.y_m,
+                                        scenario->target.vy_mps};
+    const double sds[2] = {scenario->target.position_sd_m, scenario->target.velocity_sd_mps};
+    for (int i = 0; i < MH_PACKED_SIZE(MH_CV_STATES); i++) {
+        covariance[i] = 0;
+    }
+    for (int i = 0; i < MH_CV_STATES; i++) {
+        mean[i] = (mh_real)means[i];
+        covariance[MH_PACKED(i, i)] = (mh_real)(sds[i % 2] * sds[i % 2]);
+    }
+}
+
+static void set_up_cv(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    (void)region;
+    struct mh_cv_config *config = &choice->config.cv;
+    mh_cv_config_default(config);
+    config->motion = motion_of(scenario);
+    start_of(scenario, config->mean, config->covariance);
+    config->variance = (mh_real)pow(fmax(scenario->sensor.range_noise_m, 1e-3), 2);
+    config->alpha = (mh_real)scenario->tracker.ukf_alpha;
+    if (scenario->fusion.rule != MH_FUSION_CENTRAL) {
+        config->summary = mh_summary_kind_of(scenario->fusion.rule);
+    }
+    if (scenario->network.layout == LAYOUT_RINGS) {
+        for (size_t i = 0; i < clusters_nodes(scenario); i++) {
+            const struct clustered_node node = clustered_node(scenario, i);
+            choice->noise[i] = (struct mh_cv_noise){(mh_node_id)i, (mh_real)node.range_variance_m2};
+        }
+        config->noise = choice->noise;
+        config->noise_count = (uint16_t)clusters_nodes(scenario);
+    }
+}
+
+void centre_choose(const struct scenario *scenario, struct centre_choice *choice)
+{
+    struct mh_fusion_centre_config *config = &choice->config;
+    choice->centre = scenario->fusion.rule == MH_FUSION_CENTRAL ? NULL : &mh_centre_fusion;
+    mh_fusion_centre_config_default(config);
+    config->rule = scenario->fusion.rule;
+    config->clusters = (uint8_t)clusters_count(scenario);
+    config->motion = motion_of(scenario);
+    config->keep = (mh_tick)lround(scenario->fusion.keep_s * MH_TICKS_PER_S);
+    config->start.n = MH_CV_STATES;
+    start_of(scenario, config->start.x, config->start.P);
+}
+
 static const struct {
     const struct mh_tracker *tracker;
     const char *meaning;
@@ -143,6 +202,9 @@ static const struct {
      set_up_msl},
     {&mh_tracker_centroid, "ranged target: the middle of those who detect it (range-free)", QUANTITY_RANGE,
      set_up_centroid},
+    {&mh_tracker_cv_ukf, "ranged target at nearly constant velocity: unscented Kalman filter, samples at any rate (Xu)",
+     QUANTITY_RANGE, set_up_cv},
+    {&mh_tracker_cv_ekf, "the same with an extended Kalman filter", QUANTITY_RANGE, set_up_cv},
 };
 
 enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
@@ -167,7 +229,8 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
             return 0;
         }
     }
-    snprintf(error, error_size, "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl or centroid",
+    snprintf(error, error_size,
+             "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf or cv_ekf",
              scenario->tracker.name);
     return -1;
 }

@@ -5,9 +5,11 @@
 #include "motehound/centroid.h"
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
+#include "motehound/cv.h"
 #include "motehound/diffusion.h"
 #include "motehound/direct.h"
 #include "motehound/election.h"
+#include "motehound/fusion_centre.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/msl.h"
@@ -16,6 +18,9 @@
 #include "scenario/scenario.h"
 #include "world/chatter.h"
 
+enum { CLUSTERED_NODES_MAX = 32 * SCENARIO_NUMBERS_MAX };
+
+/* Points into itself where nodes have noise of their own: not to be copied or moved. */
 struct tracker_choice {
     const struct mh_tracker *tracker;
     enum quantity measures;
@@ -26,7 +31,15 @@ struct tracker_choice {
         struct mh_pftl_config pftl;
         struct mh_msl_config msl;
         struct mh_centroid_config centroid;
-    } config; /* the tracker's own */
+        struct mh_cv_config cv;
+    } config;                                      /* the tracker's own */
+    struct mh_cv_noise noise[CLUSTERED_NODES_MAX]; /* of fixed clusters' nodes */
+};
+
+/* What joins the tracks of fixed clusters; no `centre` where one tracker has all samples. */
+struct centre_choice {
+    const struct mh_centre *centre;
+    struct mh_fusion_centre_config config;
 };
 
 struct protocol_choice {
@@ -47,6 +60,9 @@ struct protocol_choice {
  * `error` (no such tracker: names those there are). */
 int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
                    char *error, size_t error_size);
+
+/* The fusion centre that scenario->fusion names. */
+void centre_choose(const struct scenario *scenario, struct centre_choice *choice);
 
 /* Its random numbers, if it has any, come from `seed`. */
 void tracker_seed(struct tracker_choice *choice, uint32_t seed);

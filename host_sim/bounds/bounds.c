@@ -2,10 +2,13 @@
 
 #include "bounds/hindsight.h"
 #include "bounds/pcrb.h"
+#include "bounds/pcrb_fixed.h"
+#include "world/clusters.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static double pcrb_m(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment)
 {
@@ -47,10 +50,35 @@ static int in_hindsight(const struct scenario *scenario, const struct trajectory
     return 0;
 }
 
+static int of_fixed_clusters(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment,
+                             struct bounds *bounds)
+{
+    double *squares = malloc((scenario_steps(scenario) + 1) * sizeof *squares);
+    int status = squares != NULL ? pcrb_fixed_posterior(scenario, deployment, PCRB_ALL_CLUSTERS, squares) : -1;
+    if (status == 0) {
+        bounds->pcrb_m = pcrb_fixed_rms_m(scenario, squares);
+        status = pcrb_fixed_conditional(scenario, deployment, PCRB_ALL_CLUSTERS, seed, squares);
+    }
+    if (status == 0) {
+        bounds->ccrb_m = pcrb_fixed_rms_m(scenario, squares);
+    }
+    for (int c = 0; c < BOUNDS_LOCAL && (size_t)c < clusters_count(scenario) && status == 0; c++) {
+        status = pcrb_fixed_conditional(scenario, deployment, c, seed, squares);
+        bounds->local_ccrb_m[c] = pcrb_fixed_rms_m(scenario, squares);
+    }
+    free(squares);
+    return status;
+}
+
 int bounds_of(const struct scenario *scenario, uint64_t seed, struct bounds *bounds, char *error, size_t error_size)
 {
+    const bool fixed = strcmp(scenario->network.protocol, "fixed") == 0;
+    const double none = (double)NAN;
     *bounds =
-        (struct bounds){.apply = scenario->sensor.quantity == QUANTITY_RANGE && scenario->source.path != PATH_NONE};
+        (struct bounds){.apply = scenario->sensor.quantity == QUANTITY_RANGE && scenario->source.path != PATH_NONE,
+                        .follow = !fixed,
+                        .ccrb_m = none,
+                        .local_ccrb_m = {none, none, none, none}};
     if (!bounds->apply) {
         return 0;
     }
@@ -61,7 +89,9 @@ int bounds_of(const struct scenario *scenario, uint64_t seed, struct bounds *bou
     if (status == 0) {
         status = trajectory_make(&trajectory, scenario, seed, error, error_size);
     }
-    if (status == 0) {
+    if (status == 0 && fixed) {
+        status = of_fixed_clusters(scenario, seed, &deployment, bounds);
+    } else if (status == 0) {
         bounds->pcrb_m = pcrb_m(scenario, seed, &deployment);
         status = in_hindsight(scenario, &trajectory, &deployment, bounds);
     }

@@ -8,10 +8,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { BOUNDS_LOCAL = 4 };
+
 struct bounds {
-    bool apply;          /* the sensors measure ranges of a source; else there is nothing below */
-    double pcrb_m;       /* of the position, from sample metrics.skip_first on (pcrb.h); NaN unless the source walks as
+    bool apply;    /* the sensors measure ranges of a source; else there is nothing below */
+    bool follow;   /* ... and are not in fixed clusters, which hand over nothing: what was to be known in hindsight */
+    double pcrb_m; /* of the position, from sample metrics.skip_first on (pcrb.h); NaN unless the source walks as
                       mobility.h says and its true distance decides who detects it */
+    /* Of fixed clusters pcrb_m is the posterior bound of pcrb_fixed.h and ccrb_m the one along the run's own path, of all nodes and of each of the first
+     * clusters by itself; NaN for others. */
+    double ccrb_m, local_ccrb_m[BOUNDS_LOCAL];
     uint64_t hand_overs; /* between heads that sense the target at every sample (hindsight.h) */
     uint64_t reports;    /* that follow it within tracker.tolerance_m */
 };

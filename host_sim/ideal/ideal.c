@@ -1,6 +1,7 @@
 #include "ideal/ideal.h"
 
 #include "ideal/cluster.h"
+#include "ideal/fixed.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +10,7 @@ static const struct {
     const char *protocol;
     int (*run)(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
                const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
-} modes[] = {{"cluster", ideal_cluster_run}};
+} modes[] = {{"cluster", ideal_cluster_run}, {"fixed", ideal_fixed_run}};
 
 int ideal_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
               const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size)
