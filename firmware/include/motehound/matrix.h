@@ -36,6 +36,9 @@ void mh_cholesky_multiply(int n, mh_real *l);
 /* b := A^-1 b, where `l` is the factor of A. */
 void mh_cholesky_solve(int n, const mh_real *l, mh_real *b);
 
+/* l := L^-1, of the factor L; lower triangular too. */
+void mh_cholesky_invert_factor(int n, mh_real *l);
+
 /* l := A^-1, where `l` is the factor of A. Symmetric positive definite by construction: a product M' M. */
 void mh_cholesky_invert(int n, mh_real *l);
 

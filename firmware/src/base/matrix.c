@@ -80,29 +80,43 @@ void mh_cholesky_solve(int n, const mh_real *l, mh_real *b)
     }
 }
 
-void mh_cholesky_invert(int n, mh_real *l)
+void mh_cholesky_invert_factor(int n, mh_real *l)
 {
-    /* M = L^-1, row by row: row i of M needs row i of L and the rows of M above */
+    /* row i of L^-1 needs row i of L and the rows of L^-1 above */
+    mh_real *row = l;
     for (int i = 0; i < n; i++) {
-        mh_real *row = l + row_start(i);
         const mh_real reciprocal = 1.0f / row[i];
+        const mh_real *diagonal = l;
         for (int j = 0; j < i; j++) {
+            const mh_real *above = diagonal; /* down column j */
             mh_real sum = 0.0f;
             for (int k = j; k < i; k++) {
-                sum += row[k] * l[row_start(k) + j];
+                sum += row[k] * *above;
+                above += k + 1;
             }
             row[j] = -sum * reciprocal;
+            diagonal += j + 2;
         }
         row[i] = reciprocal;
+        row += i + 1;
     }
-    /* A^-1 = M' M: element (i, j) needs columns i and j from row i on, which are still untouched when taken in this order */
+}
+
+void mh_cholesky_invert(int n, mh_real *l)
+{
+    /* A^-1 = M' M, M = L^-1: element (i, j) needs columns i and j from row i on, which are still untouched when taken in this order */
+    mh_cholesky_invert_factor(n, l);
+    mh_real *from = l;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j <= i; j++) {
+            const mh_real *row = from;
             mh_real sum = 0.0f;
             for (int k = i; k < n; k++) {
-                sum += l[row_start(k) + i] * l[row_start(k) + j];
+                sum += row[i] * row[j];
+                row += k + 1;
             }
-            l[row_start(i) + j] = sum;
+            from[j] = sum;
         }
+        from += i + 1;
     }
 }

@@ -35,12 +35,10 @@ static enum mh_status join(const struct mh_gaussian *estimates, uint8_t count, c
     struct mh_information_sum sum;
     mh_information_begin(&sum, estimates);
     for (uint_fast8_t i = 0; i < count; i++) {
-        mh_real I[MH_PACKED_SIZE(MH_STATES_MAX)];
-        const enum mh_status status = mh_information_of(&estimates[i], I);
+        const enum mh_status status = mh_information_add_estimate(&sum, w ? w[i] : 1, &estimates[i]);
         if (status != MH_OK) {
             return status;
         }
-        mh_information_add(&sum, w ? w[i] : 1, I, estimates[i].x);
     }
     return mh_information_finish(&sum, fused);
 }

@@ -47,6 +47,38 @@ void mh_information_add(struct mh_information_sum *sum, mh_real weight, const mh
     }
 }
 
+enum mh_status mh_information_add_estimate(struct mh_information_sum *sum, mh_real weight,
+                                           const struct mh_gaussian *estimate)
+{
+    struct mh_gaussian_root root;
+    const enum mh_status status = mh_gaussian_factor(&root, estimate);
+    if (status != MH_OK) {
+        return status;
+    }
+    const uint8_t n = root.n;
+    const mh_real *row = root.L; /* of M = L^-1; P^-1 = M' M */
+    mh_cholesky_invert_factor(n, root.L);
+    for (uint_fast8_t i = 0; i < n; i++) {
+        root.x[i] -= sum->about[i];
+    }
+    for (uint_fast8_t k = 0; k < n; k++) {
+        mh_real *matrix = sum->matrix;
+        mh_real told = 0;
+        for (uint_fast8_t j = 0; j <= k; j++) {
+            const mh_real scaled = weight * row[j];
+            told += scaled * root.x[j];
+            for (uint_fast8_t i = 0; i <= j; i++) {
+                *matrix++ += row[i] * scaled;
+            }
+        }
+        for (uint_fast8_t j = 0; j <= k; j++) {
+            sum->vector[j] += row[j] * told;
+        }
+        row += k + 1;
+    }
+    return MH_OK;
+}
+
 enum mh_status mh_information_finish(const struct mh_information_sum *sum, struct mh_gaussian *fused)
 {
     struct mh_gaussian result;

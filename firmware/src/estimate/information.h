@@ -27,6 +27,10 @@ void mh_information_begin(struct mh_information_sum *sum, const struct mh_gaussi
 /* Add weight times the information I about an estimate with this mean. */
 void mh_information_add(struct mh_information_sum *sum, mh_real weight, const mh_real *I, const mh_real *mean);
 
+/* Add weight times an estimate's information. Errors: as mh_gaussian_check; the sum is as it was. */
+enum mh_status mh_information_add_estimate(struct mh_information_sum *sum, mh_real weight,
+                                           const struct mh_gaussian *estimate);
+
 /* The estimate of all that was added -> *fused. Errors: MH_ERR_NOT_FINITE, MH_ERR_SINGULAR. */
 enum mh_status mh_information_finish(const struct mh_information_sum *sum, struct mh_gaussian *fused);
 

@@ -1,0 +1,90 @@
+/* Four estimates of four states become one. BENCH_FUSE_* says how. */
+#include "bench.h"
+#include "motehound/fusion.h"
+
+#include <string.h>
+
+enum { ESTIMATES = 4 };
+
+static struct mh_gaussian told[ESTIMATES];
+static struct mh_split_gaussian split[ESTIMATES];
+static struct mh_information increments[ESTIMATES];
+struct mh_gaussian bench_state; /* the result */
+static bool worked;
+
+void bench_setup(void) {}
+
+static mh_real draw(void)
+{
+    static uint32_t seed = 7;
+    seed = seed * 1664525u + 1013904223u;
+    return (mh_real)(int32_t)(seed >> 8) * (2.0f / 16777216.0f) - 1.0f;
+}
+
+/* Covariances A A' + 0.1 I, means near to one another. */
+void bench_prepare(unsigned step)
+{
+    (void)step;
+    memset(split, 0, sizeof split);
+    for (int e = 0; e < ESTIMATES; e++) {
+        mh_real A[4][4];
+        struct mh_gaussian *estimate = &told[e];
+        estimate->n = increments[e].n = 4;
+        for (int i = 0; i < 4; i++) {
+            estimate->x[i] = 10 + draw();
+            for (int k = 0; k < 4; k++) {
+                A[i][k] = draw();
+            }
+        }
+        for (int j = 0; j < 4; j++) {
+            increments[e].vector[j] = 0;
+            for (int i = 0; i <= j; i++) {
+                const int at = MH_PACKED(i, j);
+                estimate->P[at] = i == j ? 0.1f : 0;
+                for (int k = 0; k < 4; k++) {
+                    estimate->P[at] += A[i][k] * A[j][k];
+                }
+                split[e].independent[at] = 0.5f * estimate->P[at];
+                increments[e].matrix[at] = A[i][0] * A[j][0] + A[i][1] * A[j][1];
+            }
+        }
+        split[e].dependent = *estimate;
+        memcpy(split[e].dependent.P, split[e].independent, sizeof split[e].independent);
+    }
+}
+
+#define FUSE_CI(weights)                                                                                               \
+    mh_real w[ESTIMATES];                                                                                              \
+    worked = weights(told, ESTIMATES, w) == MH_OK && mh_fusion_intersect(told, ESTIMATES, w, &bench_state) == MH_OK
+#define FUSE_PAIRS(rule, first, fused)                                                                                 \
+    worked = true;                                                                                                     \
+    fused = (first)[0];                                                                                                \
+    for (int e = 1; e < ESTIMATES; e++) {                                                                              \
+        worked = worked && rule(&(fused), &(first)[e], &(fused)) == MH_OK;                                             \
+    }
+
+void bench_step(void)
+{
+#if defined(BENCH_FUSE_CI)
+    FUSE_CI(mh_fusion_weights);
+#elif defined(BENCH_FUSE_CI_TRACE)
+    FUSE_CI(mh_fusion_weights_trace);
+#elif defined(BENCH_FUSE_CI_DET)
+    FUSE_CI(mh_fusion_weights_determinant);
+#elif defined(BENCH_FUSE_SCI)
+    struct mh_split_gaussian joined;
+    FUSE_PAIRS(mh_fusion_split, split, joined)
+#elif defined(BENCH_FUSE_ICI)
+    FUSE_PAIRS(mh_fusion_inverse, told, bench_state)
+#elif defined(BENCH_FUSE_EI)
+    FUSE_PAIRS(mh_fusion_ellipsoidal, told, bench_state)
+#elif defined(BENCH_FUSE_HIF)
+    worked = mh_fusion_add(&told[0], increments, ESTIMATES, &bench_state) == MH_OK;
+#elif defined(BENCH_FUSE_NAIVE)
+    worked = mh_fusion_naive(told, ESTIMATES, &bench_state) == MH_OK;
+#else
+#error "no rule"
+#endif
+}
+
+bool bench_worked(void) { return worked; }
