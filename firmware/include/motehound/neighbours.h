@@ -27,10 +27,10 @@ enum mh_edge { MH_EDGE_NEW, MH_EDGE_GABRIEL, MH_EDGE_WITNESSED };
 struct mh_neighbour {
     mh_node_id id;
     int32_t x_mm, y_mm;
-    uint16_t heard_at, witnessed_at; /* units of 256 ticks */
-    uint8_t sequence;                /* of its last hello, the low byte */
-    uint8_t heard, acked;            /* shares, of 255 */
-    uint8_t edge;                    /* enum mh_edge */
+    mh_coarse heard_at, witnessed_at;
+    uint8_t sequence;     /* of its last hello, the low byte */
+    uint8_t heard, acked; /* shares, of 255 */
+    uint8_t edge;         /* enum mh_edge */
 };
 
 /* Why an entry was lost, or not made. */
@@ -46,7 +46,7 @@ enum mh_neighbour_loss {
 struct mh_neighbours {
     mh_node_id id; /* of the node itself */
     struct mh_place place;
-    uint16_t lifetime; /* units of 256 ticks */
+    mh_coarse lifetime;
     uint8_t capacity, count;
     mh_node_id kept;                    /* gives way to nobody: see mh_neighbours_keep */
     uint16_t lost[MH_NEIGHBOUR_LOSSES]; /* saturating */

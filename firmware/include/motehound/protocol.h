@@ -43,7 +43,7 @@ struct mh_cluster_counters {
 /* What one node or many did in searches that walk from head to head (token.h). */
 struct mh_search_counters {
     uint32_t begun;
-    uint32_t restarted;            /* by the sink, which had heard nothing */
+    uint32_t sent_for;             /* times that a sink that heard nothing sent for a node to begin */
     uint32_t heads;                /* instants that somebody led */
     uint32_t handed;               /* tokens taken by the next head */
     uint32_t refused;              /* times that a node did not take one */

@@ -23,6 +23,17 @@ static inline mh_real mh_seconds_between(mh_tick earlier, mh_tick later)
 /* True if a is strictly before b. */
 static inline bool mh_tick_before(mh_tick a, mh_tick b) { return mh_ticks_between(a, b) > 0; }
 
+/* A time without its last eight bits, in 16: only differences below 2.3 hours have a meaning. */
+typedef uint16_t mh_coarse;
+
+static inline mh_coarse mh_coarse_of(mh_tick time) { return (mh_coarse)(time >> 8); }
+
+/* True if more than `lifetime` has passed since. */
+static inline bool mh_coarse_over(mh_tick now, mh_coarse since, mh_coarse lifetime)
+{
+    return (int16_t)(uint16_t)(mh_coarse_of(now) - since) > (int16_t)lifetime;
+}
+
 /* The first tick at or after `time` that is a whole number of periods from `epoch`, which may lie before or after it. */
 static inline mh_tick mh_tick_aligned(mh_tick epoch, mh_tick period, mh_tick time)
 {

@@ -86,19 +86,19 @@ struct mh_token_of {
     mh_node_id holder;
     int32_t generation;
     mh_tick heard; /* the last time */
-    uint8_t state; /* enum mh_search */
+    uint8_t state; /* MH_SEARCH_* */
 };
 
 /* What this node did; all saturate. */
 struct mh_token_events {
-    uint16_t begun;     /* searches */
-    uint16_t restarted; /* sink: searches begun anew */
-    uint16_t heads;     /* instants that this node led */
-    uint16_t handed;    /* tokens handed over */
-    uint16_t refused;   /* times that a node did not take a token */
-    uint16_t resumed;   /* times that this node led again since its successor was silent */
-    uint16_t yielded;   /* times that this head gave way to another token */
-    uint16_t corrupt;   /* tokens, parts and requests of which the content was wrong, or of no time about now */
+    uint16_t begun;    /* searches */
+    uint16_t sent_for; /* sink: times that it sent for a node to begin */
+    uint16_t heads;    /* instants that this node led */
+    uint16_t handed;   /* tokens handed over */
+    uint16_t refused;  /* times that a node did not take a token */
+    uint16_t resumed;  /* times that this node led again since its successor was silent */
+    uint16_t yielded;  /* times that this head gave way to another token */
+    uint16_t corrupt;  /* tokens, parts and requests of which the content was wrong, or of no time about now */
     uint16_t converged, exhausted; /* searches that were over here */
 };
 
@@ -133,8 +133,9 @@ struct mh_token_node {
     /* head */
     mh_tick instant;
     uint8_t heads, calm;
-    uint32_t answered; /* bit k: neighbour k of the table has */
-    mh_node_id guard;  /* who has handed over the token, and keeps it; MH_BROADCAST: nobody */
+    uint8_t answered[(MH_NEIGHBOURS_MAX + 7) / 8]; /* bit k: neighbour k of the table has */
+    uint8_t again;                                 /* the neighbour of the table that is asked once more next */
+    mh_node_id guard; /* who has handed over the token, and keeps it; MH_BROADCAST: nobody */
     struct {
         mh_node_id id;
         mh_tick until;
@@ -145,7 +146,6 @@ struct mh_token_node {
     bool handing, guarding;
     struct mh_token_of next;
     uint8_t part; /* to go */
-    mh_tick carried_time;
     uint16_t carried_length;
     uint8_t carried[MH_TOKEN_CARRIED_MAX];
 
@@ -156,7 +156,8 @@ struct mh_token_node {
     /* who has brought a search to its end; the sink */
     mh_leak_t leak;
     uint8_t reports; /* to go */
-    uint8_t restarts;
+    bool found;      /* sink: leak holds */
+    uint8_t sent_for;
     struct mh_place head_place; /* of the last head heard of */
 };
 

@@ -10,7 +10,7 @@
 struct mh_vicinity {
     mh_node_id id; /* of the node itself, which is in the table */
     struct mh_place place;
-    uint16_t lifetime; /* units of 256 ticks */
+    mh_coarse lifetime;
     uint8_t count;
     uint16_t crowded; /* entries that gave way, or were not made, for want of room; saturates */
     struct mh_vicinity_entry {

@@ -2,20 +2,12 @@
 
 #include <string.h>
 
-#define COARSE_BITS 8    /* an entry's times are ticks without their last eight bits */
 #define SHARE_MAX 255    /* 100 % */
 #define SHARE_NEW 192    /* of a neighbour's hellos, before a second one has come */
 #define SHARE_USABLE 64  /* a quarter */
 #define MISSED_MAX 16    /* a greater gap between the numbers of two hellos means that the sender has been restarted */
 #define NOBODY UINT8_MAX /* index of no entry */
 #define OCTANTS 8
-
-static uint16_t coarse(mh_tick time) { return (uint16_t)(time >> COARSE_BITS); }
-
-static bool is_over(const struct mh_neighbours *table, mh_tick now, uint16_t since)
-{
-    return (int16_t)(uint16_t)(coarse(now) - since) > (int16_t)table->lifetime;
-}
 
 static void count(struct mh_neighbours *table, enum mh_neighbour_loss reason)
 {
@@ -225,7 +217,7 @@ enum mh_status mh_neighbours_init(struct mh_neighbours *table, mh_node_id id, co
     table->place = *place;
     table->capacity = capacity;
     table->kept = MH_BROADCAST;
-    table->lifetime = coarse(lifetime);
+    table->lifetime = mh_coarse_of(lifetime);
     return MH_OK;
 }
 
@@ -246,7 +238,7 @@ enum mh_status mh_neighbours_hello(struct mh_neighbours *table, mh_tick now, con
     struct mh_neighbour sender = {.id = (mh_node_id)hello->sender,
                                   .x_mm = hello->x_mm,
                                   .y_mm = hello->y_mm,
-                                  .heard_at = coarse(now),
+                                  .heard_at = mh_coarse_of(now),
                                   .sequence = (uint8_t)hello->sequence,
                                   .heard = SHARE_NEW,
                                   .acked = SHARE_MAX};
@@ -276,10 +268,10 @@ void mh_neighbours_age(struct mh_neighbours *table, mh_tick now)
 {
     for (uint8_t i = table->count; i-- > 0;) {
         struct mh_neighbour *n = &table->list[i];
-        if (is_over(table, now, n->heard_at)) {
+        if (mh_coarse_over(now, n->heard_at, table->lifetime)) {
             count(table, MH_NEIGHBOUR_SILENT);
             erase(table, i);
-        } else if (n->edge == MH_EDGE_WITNESSED && is_over(table, now, n->witnessed_at)) {
+        } else if (n->edge == MH_EDGE_WITNESSED && mh_coarse_over(now, n->witnessed_at, table->lifetime)) {
             n->edge = MH_EDGE_GABRIEL;
         }
     }
