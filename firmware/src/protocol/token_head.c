@@ -108,7 +108,7 @@ void mh_token_ask(struct mh_token_node *t)
 
 static bool has_answered(const struct mh_token_node *t, uint8_t neighbour)
 {
-    return (t->answered[neighbour / 8] >> neighbour % 8 & 1u) != 0;
+    return (t->answered[neighbour / 8] & 1u << neighbour % 8) != 0;
 }
 
 /* One of those that have not answered; the others soon. */
