@@ -330,10 +330,10 @@ static void a_node_says_hello_and_whom_it_hears(void)
     TEST_ASSERT_EQUAL(3, saw.of_kind[MH_MESSAGE_HELLO]);
     TEST_ASSERT_EQUAL(6, saw.of_kind[MH_MESSAGE_VICINITY]); /* nine neighbours take two lists; the sink is none */
     TEST_ASSERT_EQUAL(MH_MESSAGE_VICINITY, saw.message.kind);
-    TEST_ASSERT_EQUAL(1, saw.message.as.vicinity.count);
-    TEST_ASSERT_EQUAL_INT32(108, saw.message.as.vicinity.id[0]);
-    TEST_ASSERT_EQUAL_INT32(108000, saw.message.as.vicinity.x_mm[0]);
-    TEST_ASSERT_EQUAL_INT32(-1, saw.message.as.vicinity.id[1]);
+    TEST_ASSERT_EQUAL(3, saw.message.as.vicinity.count);
+    TEST_ASSERT_EQUAL_INT32(108, saw.message.as.vicinity.id[2]);
+    TEST_ASSERT_EQUAL_INT32(108000, saw.message.as.vicinity.x_mm[2]);
+    TEST_ASSERT_EQUAL_INT32(-1, saw.message.as.vicinity.id[3]);
     pass(config.hello_period + MH_TOKEN_START);
     TEST_ASSERT_EQUAL(4, saw.of_kind[MH_MESSAGE_HELLO]);
     TEST_ASSERT_EQUAL(8, saw.of_kind[MH_MESSAGE_VICINITY]);
