@@ -53,37 +53,35 @@ void bench_prepare(unsigned step)
     }
 }
 
-#define FUSE_CI(weights)                                                                                               \
-    mh_real w[ESTIMATES];                                                                                              \
-    worked = weights(told, ESTIMATES, w) == MH_OK && mh_fusion_intersect(told, ESTIMATES, w, &bench_state) == MH_OK
-#define FUSE_PAIRS(rule, first, fused)                                                                                 \
-    worked = true;                                                                                                     \
-    fused = (first)[0];                                                                                                \
-    for (int e = 1; e < ESTIMATES; e++) {                                                                              \
-        worked = worked && rule(&(fused), &(first)[e], &(fused)) == MH_OK;                                             \
-    }
+#if defined(BENCH_FUSE_CI)
+#define WEIGHTS mh_fusion_weights
+#elif defined(BENCH_FUSE_CI_TRACE)
+#define WEIGHTS mh_fusion_weights_trace
+#elif defined(BENCH_FUSE_CI_DET)
+#define WEIGHTS mh_fusion_weights_determinant
+#elif defined(BENCH_FUSE_ICI)
+#define PAIR mh_fusion_inverse
+#elif defined(BENCH_FUSE_EI)
+#define PAIR mh_fusion_ellipsoidal
+#endif
 
 void bench_step(void)
 {
-#if defined(BENCH_FUSE_CI)
-    FUSE_CI(mh_fusion_weights);
-#elif defined(BENCH_FUSE_CI_TRACE)
-    FUSE_CI(mh_fusion_weights_trace);
-#elif defined(BENCH_FUSE_CI_DET)
-    FUSE_CI(mh_fusion_weights_determinant);
+#if defined(WEIGHTS)
+    mh_real w[ESTIMATES];
+    worked = WEIGHTS(told, ESTIMATES, w) == MH_OK && mh_fusion_intersect(told, ESTIMATES, w, &bench_state) == MH_OK;
+#elif defined(PAIR)
+    worked = PAIR(&told[0], &told[1], &bench_state) == MH_OK && PAIR(&bench_state, &told[2], &bench_state) == MH_OK &&
+             PAIR(&bench_state, &told[3], &bench_state) == MH_OK;
 #elif defined(BENCH_FUSE_SCI)
     struct mh_split_gaussian joined;
-    FUSE_PAIRS(mh_fusion_split, split, joined)
-#elif defined(BENCH_FUSE_ICI)
-    FUSE_PAIRS(mh_fusion_inverse, told, bench_state)
-#elif defined(BENCH_FUSE_EI)
-    FUSE_PAIRS(mh_fusion_ellipsoidal, told, bench_state)
+    worked = mh_fusion_split(&split[0], &split[1], &joined) == MH_OK &&
+             mh_fusion_split(&joined, &split[2], &joined) == MH_OK &&
+             mh_fusion_split(&joined, &split[3], &joined) == MH_OK;
 #elif defined(BENCH_FUSE_HIF)
     worked = mh_fusion_add(&told[0], increments, ESTIMATES, &bench_state) == MH_OK;
-#elif defined(BENCH_FUSE_NAIVE)
-    worked = mh_fusion_naive(told, ESTIMATES, &bench_state) == MH_OK;
 #else
-#error "no rule"
+    worked = mh_fusion_naive(told, ESTIMATES, &bench_state) == MH_OK;
 #endif
 }
 
