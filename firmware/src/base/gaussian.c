@@ -218,7 +218,7 @@ void mh_gaussian_root_take(struct mh_gaussian_root *root, const mh_real *c, mh_r
 enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh_gaussian_root *root)
 {
     const uint8_t n = root->n;
-    mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)];
+    mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)], L[MH_PACKED_SIZE(MH_STATES_MAX)];
     if (!all_finite(root->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
@@ -234,6 +234,15 @@ enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh
             return MH_ERR_SINGULAR;
         }
         *variance += mh_max(lost, 0);
+    }
+    /* where several pivots are small, one can fall to the rounding of the elements before it, here or on the machine that reads P: it takes a floor
+     * under every eigenvalue then */
+    bool raised;
+    memcpy(L, P, packed_size(n) * sizeof P[0]);
+    if (mh_cholesky_factor_raised(n, L, &raised) != MH_OK || raised) {
+        for (uint_fast8_t i = 0; i < n; i++) {
+            P[MH_PACKED(i, i)] *= 1.0f + MH_PIVOT_FLOOR;
+        }
     }
     gaussian->n = n;
     memcpy(gaussian->x, root->x, n * sizeof P[0]);

@@ -222,6 +222,28 @@ static void what_float_cannot_say_is_raised(void)
     TEST_ASSERT_EQUAL_INT(MH_ERR_SINGULAR, mh_gaussian_settle(&g));
 }
 
+/* Two of three combinations of the states are known to a thousandth or less, in any directions: whatever comes of it can be factored. */
+static void narrow_ridges_can_be_factored(void)
+{
+    uint32_t draw = 1;
+    for (int trial = 0; trial < 300; trial++) {
+        struct mh_gaussian g = {3, {0, 0, 0}, {2e4f, 0, 1e4f, 0, 0, 900}};
+        for (int k = 0; k < 4; k++) {
+            struct mh_gaussian_root root;
+            mh_real h[3], c[3];
+            for (int i = 0; i < 3; i++) {
+                draw = draw * 1664525u + 1013904223u;
+                h[i] = (mh_real)(draw >> 8) / 8388608.0f - 1;
+            }
+            TEST_ASSERT_EQUAL_INT(MH_OK, mh_gaussian_factor(&root, &g));
+            mh_gaussian_root_gradient(&root, h, c);
+            mh_gaussian_root_take(&root, c, 0, k < 2 ? 1e-4f : 1e-2f);
+            TEST_ASSERT_EQUAL_INT(MH_OK, mh_gaussian_compose(&g, &root));
+        }
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_gaussian_check(&g));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -232,6 +254,7 @@ int main(void)
     RUN_TEST(bad_predictions_change_nothing);
     RUN_TEST(one_scalar_taken);
     RUN_TEST(what_float_cannot_say_is_raised);
+    RUN_TEST(narrow_ridges_can_be_factored);
     port_exit(UNITY_END() > 0);
     return 0;
 }
