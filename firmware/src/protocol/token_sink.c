@@ -21,7 +21,7 @@ static bool read_spread(const mh_leak_t *leak, struct mh_estimate *estimate)
     const uint8_t *bytes = leak->spread;
     struct mh_gaussian gaussian = {.n = 3};
     bool any = false;
-    for (uint8_t i = 0; i < MH_PACKED_SIZE(3); i++) {
+    for (int i = 0; i < MH_PACKED_SIZE(3); i++) {
         gaussian.P[i] = mh_get_real(&bytes);
         any = any || gaussian.P[i] != 0;
     }
