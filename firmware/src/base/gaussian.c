@@ -18,19 +18,25 @@ static bool all_finite(const mh_real *a, uint_fast8_t count)
     return finite;
 }
 
+/* P has no factor: a number that is not finite leaves no pivot behind it that is. */
+static enum mh_status why_not(const struct mh_gaussian *gaussian)
+{
+    return all_finite(gaussian->P, packed_size(gaussian->n)) ? MH_ERR_SINGULAR : MH_ERR_NOT_FINITE;
+}
+
 enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian)
 {
     const uint8_t n = gaussian->n;
     if (n < 1 || n > MH_STATES_MAX) {
         return MH_ERR_ARGUMENT;
     }
-    if (!all_finite(gaussian->x, n) || !all_finite(gaussian->P, packed_size(n))) {
+    if (!all_finite(gaussian->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
     root->n = n;
     memcpy(root->x, gaussian->x, n * sizeof root->x[0]);
     memcpy(root->L, gaussian->P, packed_size(n) * sizeof root->L[0]);
-    return mh_cholesky_factor(n, root->L);
+    return mh_cholesky_factor(n, root->L) == MH_OK ? MH_OK : why_not(gaussian);
 }
 
 enum mh_status mh_gaussian_check(const struct mh_gaussian *gaussian)
@@ -80,16 +86,18 @@ enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian)
     const uint8_t n = gaussian->n;
     mh_real L[MH_PACKED_SIZE(MH_STATES_MAX)];
     bool raised;
-    if (!all_finite(gaussian->x, n) || !all_finite(gaussian->P, packed_size(n))) {
+    if (!all_finite(gaussian->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
     memcpy(L, gaussian->P, packed_size(n) * sizeof L[0]);
-    const enum mh_status status = mh_cholesky_factor_raised(n, L, &raised);
-    if (status == MH_OK && raised) {
+    if (mh_cholesky_factor_raised(n, L, &raised) != MH_OK) {
+        return why_not(gaussian);
+    }
+    if (raised) {
         mh_cholesky_multiply(n, L);
         memcpy(gaussian->P, L, packed_size(n) * sizeof L[0]);
     }
-    return status;
+    return MH_OK;
 }
 
 enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *F, const mh_real *Q)
@@ -178,41 +186,58 @@ enum mh_status mh_gaussian_reduction(const struct mh_gaussian *before, const str
 
 void mh_gaussian_root_gradient(const struct mh_gaussian_root *root, const mh_real *h, mh_real *c)
 {
-    const mh_real *row = root->L;
-    for (uint_fast8_t i = 0; i < root->n; i++) {
-        c[i] = 0;
-        for (uint_fast8_t j = 0; j <= i; j++) {
-            c[j] += row[j] * h[i];
+    const uint8_t n = root->n;
+    for (uint_fast8_t j = 0; j < n; j++) {
+        const mh_real *element = root->L + MH_PACKED(j, j);
+        mh_real sum = 0;
+        for (uint_fast8_t i = j; i < n; i++) {
+            sum += *element * h[i];
+            element += i + 1;
         }
+        c[j] = sum;
+    }
+}
+
+void mh_root_turn_begin(struct mh_root_turn *turn, uint8_t n, const mh_real *c, mh_real innovation, mh_real variance)
+{
+    mh_real rest = variance; /* and the squares of c from j + 1 on */
+    turn->c = c;
+    for (uint_fast8_t j = n; j-- > 0;) {
+        const mh_real sum = rest + c[j] * c[j];
+        const mh_real inverse = 1.0f / sum;
+        const mh_real scale = mh_sqrt(rest * inverse);
+        turn->scale[j] = scale;
+        turn->share[j] = c[j] != 0 ? c[j] * inverse / scale : 0;
+        rest = sum;
+    }
+    turn->step = innovation / rest;
+}
+
+mh_real mh_root_turn_row(const struct mh_root_turn *turn, mh_real *row, uint8_t length)
+{
+    mh_real sum = 0; /* of row and c, from j + 1 on: the row's covariance with what was measured, in the end */
+    for (uint_fast8_t j = length; j-- > 0;) {
+        const mh_real old = row[j];
+        row[j] = turn->scale[j] * old - turn->share[j] * sum;
+        sum += turn->c[j] * old;
+    }
+    return sum * turn->step;
+}
+
+void mh_gaussian_root_apply(struct mh_gaussian_root *root, const struct mh_root_turn *turn)
+{
+    mh_real *row = root->L;
+    for (uint8_t i = 0; i < root->n; i++) {
+        root->x[i] += mh_root_turn_row(turn, row, (uint8_t)(i + 1));
         row += i + 1;
     }
 }
 
 void mh_gaussian_root_take(struct mh_gaussian_root *root, const mh_real *c, mh_real innovation, mh_real variance)
 {
-    const uint8_t n = root->n;
-    mh_real gain[MH_STATES_MAX] = {0}; /* the sum of c_k times column k of L, k > j: P h in the end */
-    mh_real rest = variance;           /* and of their squares, and the noise */
-    for (uint_fast8_t j = n; j-- > 0;) {
-        if (c[j] == 0) {
-            continue;
-        }
-        const mh_real sum = rest + c[j] * c[j];
-        const mh_real scale = mh_sqrt(rest / sum);
-        const mh_real share = c[j] / (scale * sum);
-        mh_real *element = root->L + MH_PACKED(j, j);
-        for (uint_fast8_t i = j; i < n; i++) {
-            const mh_real old = *element;
-            *element = scale * old - share * gain[i];
-            gain[i] += c[j] * old;
-            element += i + 1;
-        }
-        rest = sum;
-    }
-    const mh_real step = innovation / rest;
-    for (uint_fast8_t i = 0; i < n; i++) {
-        root->x[i] += gain[i] * step;
-    }
+    struct mh_root_turn turn;
+    mh_root_turn_begin(&turn, root->n, c, innovation, variance);
+    mh_gaussian_root_apply(root, &turn);
 }
 
 enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh_gaussian_root *root)

@@ -52,12 +52,15 @@ void mh_cholesky_multiply(int n, mh_real *l)
 {
     /* element (i, j) needs rows i and j up to column j, which are still untouched when taken in this order */
     for (int i = n - 1; i >= 0; i--) {
+        mh_real *row = l + row_start(i);
+        const mh_real *other = row;
         for (int j = i; j >= 0; j--) {
             mh_real sum = 0.0f;
             for (int k = 0; k <= j; k++) {
-                sum += l[row_start(i) + k] * l[row_start(j) + k];
+                sum += row[k] * other[k];
             }
-            l[row_start(i) + j] = sum;
+            row[j] = sum;
+            other -= j;
         }
     }
 }

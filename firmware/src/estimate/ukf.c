@@ -26,31 +26,19 @@ static enum mh_status spread_of(struct spread *spread, const struct mh_ukf_weigh
     return MH_OK;
 }
 
-/* What the transition makes of the sigma points on both sides of column i, as differences c_i and d_i / (2 gamma). `point` is the middle, before
- * and after. */
-static enum mh_status move_pair(const struct mh_gaussian_root *root, const struct spread *spread,
-                                const struct mh_transition *transition, const mh_real *middle, uint_fast8_t i,
-                                mh_real *point, mh_real *c, mh_real *d)
+/* The sigma points on both sides along column i: what they were along the column before is put back, rows above it are those of x. */
+static void put_pair(const struct mh_gaussian_root *root, mh_real gamma, uint_fast8_t i, mh_real *plus, mh_real *minus)
 {
-    const uint8_t n = root->n;
-    mh_real plus[MH_STATES_MAX], minus[MH_STATES_MAX];
-    for (uint_fast8_t j = i; j < n; j++) {
-        point[j] = root->x[j] + spread->gamma * root->L[MH_PACKED(i, j)];
+    const mh_real *element = root->L + MH_PACKED(i, i);
+    if (i > 0) {
+        plus[i - 1] = minus[i - 1] = root->x[i - 1];
     }
-    enum mh_status status = transition->move(transition->context, point, plus, NULL);
-    if (status != MH_OK) {
-        return status;
+    for (uint_fast8_t j = i; j < root->n; j++) {
+        const mh_real x = root->x[j], step = gamma * *element;
+        plus[j] = x + step;
+        minus[j] = x - step;
+        element += j + 1;
     }
-    for (uint_fast8_t j = i; j < n; j++) {
-        point[j] = root->x[j] - spread->gamma * root->L[MH_PACKED(i, j)];
-    }
-    status = transition->move(transition->context, point, minus, NULL);
-    for (uint_fast8_t j = 0; j < n; j++) {
-        point[j] = root->x[j];
-        c[j] = (plus[j] - minus[j]) * spread->first;
-        d[j] = ((plus[j] - middle[j]) + (minus[j] - middle[j])) * spread->first;
-    }
-    return status;
 }
 
 enum mh_status mh_ukf_predict(struct mh_gaussian *gaussian, const struct mh_ukf_weights *weights,
@@ -59,7 +47,7 @@ enum mh_status mh_ukf_predict(struct mh_gaussian *gaussian, const struct mh_ukf_
     struct mh_gaussian_root root;
     struct mh_gaussian next = *gaussian;
     struct spread spread;
-    mh_real point[MH_STATES_MAX], middle[MH_STATES_MAX], c[MH_STATES_MAX], d[MH_STATES_MAX];
+    mh_real plus[MH_STATES_MAX], minus[MH_STATES_MAX], middle[MH_STATES_MAX], c[MH_STATES_MAX], d[MH_STATES_MAX];
     mh_real mean[MH_STATES_MAX] = {0}; /* of the d so far */
     enum mh_status status = mh_gaussian_factor(&root, gaussian);
     if (status == MH_OK) {
@@ -73,9 +61,12 @@ enum mh_status mh_ukf_predict(struct mh_gaussian *gaussian, const struct mh_ukf_
     }
     const uint8_t n = root.n;
     memcpy(next.P, Q, (size_t)MH_PACKED_SIZE(n) * sizeof next.P[0]);
-    memcpy(point, root.x, n * sizeof point[0]);
     for (uint_fast8_t i = 0; i < n; i++) {
-        status = move_pair(&root, &spread, transition, middle, i, point, c, d);
+        put_pair(&root, spread.gamma, i, plus, minus);
+        status = transition->move(transition->context, plus, c, NULL);
+        if (status == MH_OK) {
+            status = transition->move(transition->context, minus, d, NULL);
+        }
         if (status != MH_OK) {
             return status;
         }
@@ -83,7 +74,9 @@ enum mh_status mh_ukf_predict(struct mh_gaussian *gaussian, const struct mh_ukf_
         const mh_real share = 1.0f / (mh_real)(i + 1);
         mh_real *p = next.P;
         for (uint_fast8_t j = 0; j < n; j++) {
-            d[j] -= mean[j];
+            const mh_real above = c[j] - middle[j], below = d[j] - middle[j];
+            c[j] = (above - below) * spread.first;
+            d[j] = (above + below) * spread.first - mean[j];
             const mh_real weighted = (1.0f - share) * d[j];
             for (uint_fast8_t k = 0; k <= j; k++) {
                 *p++ += c[j] * c[k] + weighted * d[k];
@@ -112,6 +105,7 @@ enum mh_status mh_ukf_predict(struct mh_gaussian *gaussian, const struct mh_ukf_
 
 /* One element as the sigma points see it. */
 struct sight {
+    mh_real middle;
     mh_real c[MH_STATES_MAX]; /* first differences: the gradient with respect to L^-1 x */
     mh_real d[MH_STATES_MAX]; /* second differences less their mean, over 2 gamma */
     mh_real D;                /* its mean less its value in the middle, times the root of beta + alpha^2 kappa / n */
@@ -131,52 +125,57 @@ static enum mh_status off_middle(const struct mh_observations *observations, uin
     return status;
 }
 
-static enum mh_status look(struct sight *sight, const struct mh_gaussian_root *root, const struct spread *spread,
-                           const struct mh_observations *observations, uint16_t k)
+/* The sum of the second differences is in sight->D. */
+static enum mh_status conclude(struct sight *sight, const struct spread *spread,
+                               const struct mh_observations *observations, uint16_t k, uint8_t n)
 {
-    const uint8_t n = root->n;
-    mh_real point[MH_STATES_MAX], middle, sum = 0;
-    enum mh_status status = observations->predict(observations->context, k, root->x, &middle, NULL);
-    if (status != MH_OK) {
-        return status;
-    }
-    if (!(observations->variance[k] >= SMALLEST)) {
-        return MH_ERR_ARGUMENT;
-    }
-    memcpy(point, root->x, n * sizeof point[0]);
-    for (uint_fast8_t i = 0; i < n; i++) {
-        mh_real plus, minus;
-        const mh_real *element = root->L + MH_PACKED(i, i);
-        for (uint_fast8_t j = i; j < n; j++) {
-            point[j] = root->x[j] + spread->gamma * *element;
-            element += j + 1;
-        }
-        status = off_middle(observations, k, point, middle, &plus);
-        if (status != MH_OK) {
-            return status;
-        }
-        for (uint_fast8_t j = i; j < n; j++) {
-            point[j] = root->x[j] + (root->x[j] - point[j]);
-        }
-        status = off_middle(observations, k, point, middle, &minus);
-        if (status != MH_OK) {
-            return status;
-        }
-        memcpy(point + i, root->x + i, (size_t)(n - i) * sizeof point[0]);
-        sight->c[i] = (plus - minus) * spread->first;
-        sight->d[i] = (plus + minus) * spread->first;
-        sum += plus + minus;
-    }
-    const mh_real D = sum * spread->half, mean = sum * spread->first / (mh_real)n;
+    const mh_real D = sight->D * spread->half, mean = sight->D * spread->first / (mh_real)n;
     for (uint_fast8_t i = 0; i < n; i++) {
         sight->d[i] -= mean;
     }
     sight->D = spread->bend * D;
-    sight->innovation = observations->z[k] - middle - D;
+    sight->innovation = observations->z[k] - sight->middle - D;
     if (observations->wrap) {
         sight->innovation = observations->wrap(observations->context, k, sight->innovation);
     }
     return mh_finite(sight->innovation) ? MH_OK : MH_ERR_NOT_FINITE;
+}
+
+/* `count` elements from number `first` on, all with the same sigma points. */
+static enum mh_status look(struct sight *sights, uint16_t count, const struct mh_gaussian_root *root,
+                           const struct spread *spread, const struct mh_observations *observations, uint16_t first)
+{
+    const uint8_t n = root->n;
+    mh_real plus[MH_STATES_MAX], minus[MH_STATES_MAX];
+    enum mh_status status = MH_OK;
+    for (uint16_t k = 0; k < count && status == MH_OK; k++) {
+        const uint16_t number = (uint16_t)(first + k);
+        sights[k].D = 0;
+        status = observations->predict(observations->context, number, root->x, &sights[k].middle, NULL);
+        if (!(observations->variance[number] >= SMALLEST)) {
+            return MH_ERR_ARGUMENT;
+        }
+    }
+    for (uint_fast8_t i = 0; i < n; i++) {
+        put_pair(root, spread->gamma, i, plus, minus);
+        for (uint16_t k = 0; k < count && status == MH_OK; k++) {
+            struct sight *sight = &sights[k];
+            mh_real above, below;
+            status = off_middle(observations, (uint16_t)(first + k), plus, sight->middle, &above);
+            if (status == MH_OK) {
+                status = off_middle(observations, (uint16_t)(first + k), minus, sight->middle, &below);
+            }
+            if (status == MH_OK) {
+                sight->c[i] = (above - below) * spread->first;
+                sight->d[i] = (above + below) * spread->first;
+                sight->D += above + below;
+            }
+        }
+    }
+    for (uint16_t k = 0; k < count && status == MH_OK; k++) {
+        status = conclude(&sights[k], spread, observations, (uint16_t)(first + k), n);
+    }
+    return status;
 }
 
 /* Covariance of two elements beyond what their gradients make it, their noise not counted. */
@@ -200,7 +199,7 @@ enum mh_status mh_ukf_update(struct mh_gaussian *gaussian, const struct mh_ukf_w
     }
     for (uint16_t k = 0; k < observations->count && status == MH_OK; k++) {
         struct sight sight;
-        status = look(&sight, &root, &spread, observations, k);
+        status = look(&sight, 1, &root, &spread, observations, k);
         if (status == MH_OK) {
             mh_gaussian_root_take(&root, sight.c, sight.innovation,
                                   observations->variance[k] + curvature(&sight, &sight, root.n));
@@ -229,45 +228,10 @@ static void decorrelate(struct sight *sights, uint16_t count, const mh_real *G, 
     }
 }
 
-/* y = L^-1 (x - root.x) is of mean 0 and covariance I; what the sights, linear in it, make of that -> part. */
-static void take_all(struct mh_gaussian_root *part, const struct sight *sights, uint16_t count, uint8_t n)
-{
-    memset(part, 0, sizeof *part);
-    part->n = n;
-    for (uint_fast8_t i = 0; i < n; i++) {
-        part->L[MH_PACKED(i, i)] = 1;
-    }
-    for (uint16_t k = 0; k < count; k++) {
-        mh_real c[MH_STATES_MAX], innovation = sights[k].innovation;
-        for (uint_fast8_t i = 0; i < n; i++) {
-            innovation -= sights[k].c[i] * part->x[i];
-        }
-        mh_gaussian_root_gradient(part, sights[k].c, c);
-        mh_gaussian_root_take(part, c, innovation, 1);
-    }
-}
-
-/* x += L y, L = L times the root of y. */
-static void move_by(struct mh_gaussian_root *root, const struct mh_gaussian_root *part)
-{
-    mh_real *row = root->L;
-    for (uint_fast8_t i = 0; i < root->n; i++) {
-        for (uint_fast8_t j = 0; j <= i; j++) {
-            mh_real sum = 0;
-            root->x[i] += row[j] * part->x[j];
-            for (uint_fast8_t k = j; k <= i; k++) {
-                sum += row[k] * part->L[MH_PACKED(j, k)];
-            }
-            row[j] = sum;
-        }
-        row += i + 1;
-    }
-}
-
 enum mh_status mh_ukf_update_stacked(struct mh_gaussian *gaussian, const struct mh_ukf_weights *weights,
                                      const struct mh_observations *observations)
 {
-    struct mh_gaussian_root root, part;
+    struct mh_gaussian_root root;
     struct spread spread;
     struct sight sights[MH_STACKED_MAX];
     mh_real noise[MH_PACKED_SIZE(MH_STACKED_MAX)];
@@ -280,21 +244,31 @@ enum mh_status mh_ukf_update_stacked(struct mh_gaussian *gaussian, const struct 
     if (status == MH_OK && count > MH_STACKED_MAX) {
         status = MH_ERR_CAPACITY;
     }
-    mh_real *element = noise;
-    for (uint16_t k = 0; k < count && status == MH_OK; k++) {
-        status = look(&sights[k], &root, &spread, observations, k);
-        for (uint16_t m = 0; m <= k && status == MH_OK; m++) {
-            *element++ = curvature(&sights[k], &sights[m], root.n) + (m == k ? observations->variance[k] : 0);
-        }
-    }
     if (status == MH_OK) {
-        status = mh_cholesky_factor_raised((int)count, noise, &raised);
+        status = look(sights, count, &root, &spread, observations, 0);
     }
     if (status != MH_OK) {
         return status;
     }
+    mh_real *element = noise;
+    for (uint16_t k = 0; k < count; k++) {
+        for (uint16_t m = 0; m < k; m++) {
+            *element++ = curvature(&sights[k], &sights[m], root.n);
+        }
+        *element++ = curvature(&sights[k], &sights[k], root.n) + observations->variance[k];
+    }
+    status = mh_cholesky_factor_raised((int)count, noise, &raised);
+    if (status != MH_OK) {
+        return status;
+    }
     decorrelate(sights, count, noise, root.n);
-    take_all(&part, sights, count, root.n);
-    move_by(&root, &part);
+    for (uint16_t k = 0; k < count; k++) {
+        struct mh_root_turn turn;
+        mh_root_turn_begin(&turn, root.n, sights[k].c, sights[k].innovation, 1);
+        mh_gaussian_root_apply(&root, &turn);
+        for (uint16_t m = (uint16_t)(k + 1); m < count; m++) {
+            sights[m].innovation -= mh_root_turn_row(&turn, sights[m].c, root.n);
+        }
+    }
     return mh_gaussian_compose(gaussian, &root);
 }
