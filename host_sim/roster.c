@@ -83,6 +83,10 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         return -1;
     }
     mote_kit_complete(kit, scenario, 0);
+    if (kit->protocol.fixed) {
+        centre_choose(scenario, &kit->centre);
+        kit->head.lateness = kit->tracker.config.cv.lag;
+    }
     if (kit->protocol.in_turns) {
         kit->head.window = kit->protocol.config.cluster.window;
         kit->head.tolerance = kit->head.interval / 4; /* who is asked samples when he hears it */
@@ -93,12 +97,16 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
     return 0;
 }
 
+static bool nodes_lead(const struct protocol_choice *protocol) { return protocol->in_turns || protocol->fixed; }
+
 struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_sink)
 {
     return (struct host_mote){.id = id,
                               .place = place,
                               .sensor = is_sink ? NULL : &kit->sensor,
-                              .head = is_sink != kit->protocol.in_turns ? &kit->head : NULL,
+                              .head = is_sink != nodes_lead(&kit->protocol) ? &kit->head : NULL,
+                              .centre = is_sink && kit->protocol.fixed ? kit->centre.centre : NULL,
+                              .centre_config = &kit->centre.config,
                               .protocol = kit->protocol.protocol,
                               .protocol_config = &kit->protocol.config,
                               .sync = kit->synchronised ? is_sink ? &kit->root : &kit->other : NULL};
@@ -109,6 +117,9 @@ void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place p
     if (kit->protocol.protocol == &mh_protocol_cluster) {
         kit->protocol.config.cluster.sink = sink;
         kit->protocol.config.cluster.sink_place = place;
+    } else if (kit->protocol.fixed) {
+        kit->protocol.config.fixed.sink = sink;
+        kit->protocol.config.fixed.sink_place = place;
     }
 }
 
@@ -163,7 +174,7 @@ struct host_mote roster_mote(const struct roster *roster, uint32_t mote)
 
 bool roster_computes(const struct roster *roster, uint32_t mote)
 {
-    return (mote >= roster->deployment.count) != roster->kit.protocol.in_turns;
+    return (mote >= roster->deployment.count) != nodes_lead(&roster->kit.protocol);
 }
 
 bool roster_has_clocks(const struct roster *roster)

@@ -15,6 +15,7 @@ struct mote_kit {
     struct mh_sensor_config sensor;
     struct tracker_choice tracker;
     struct protocol_choice protocol;
+    struct centre_choice centre; /* of the sink of fixed clusters */
     struct mh_head_config head;
     bool synchronised;                  /* motes keep the network's time ... */
     struct mh_clock_config root, other; /* ... which is the head's */

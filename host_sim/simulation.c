@@ -2,6 +2,7 @@
 
 #include "ideal/ideal.h"
 #include "network.h"
+#include "world/clusters.h"
 #include "world/field.h"
 #include "world/ranging.h"
 #include "world/sensor.h"
@@ -14,6 +15,7 @@
 enum power { POWER_ON, POWER_OFF, POWER_DEAD };
 
 struct run {
+    const struct scenario *scenario;
     const struct observer *observer;
     struct roster roster;
     struct traffic traffic; /* where there is no source; else the next eight */
@@ -47,11 +49,25 @@ static struct truth truth_at(const struct run *run, double time_s)
     return truth;
 }
 
+/* A head of fixed clusters has an estimate at each instant, but tells the sink of some. */
+static void report_local(const struct run *run, uint32_t mote, double now_s, double time_s,
+                         const struct mh_estimate *estimate)
+{
+    const struct truth truth = truth_at(run, time_s);
+    const mh_tick interval = run->roster.kit.protocol.config.fixed.report_interval;
+    if (run->observer->local && estimate->time % interval == 0) {
+        const uint8_t cluster = (uint8_t)clustered_node(run->scenario, mote).cluster;
+        run->observer->local(run->observer->context, now_s, cluster, roster_id(&run->roster, mote), estimate, &truth);
+    }
+}
+
 static void report(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate)
 {
     const struct run *run = context;
     const bool is_sink = mote == run->roster.deployment.count;
-    if (is_sink && run->roster.kit.protocol.in_turns) {
+    if (!is_sink && run->roster.kit.protocol.fixed) {
+        report_local(run, mote, now_s, time_s, estimate);
+    } else if (is_sink && run->roster.kit.protocol.in_turns) {
         if (run->observer->sink) {
             const struct truth at_time = truth_at(run, time_s);
             run->observer->sink(run->observer->context, now_s, estimate, &at_time);
@@ -105,8 +121,11 @@ static void sample_range(struct run *run, uint64_t instant, double time_s, uint3
 static void sample_ranges(struct run *run, uint64_t instant, double time_s)
 {
     const struct point source = trajectory_position(&run->field.trajectory, time_s);
+    const bool fixed = run->roster.kit.protocol.fixed;
     for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
-        sample_range(run, instant, time_s, i, source);
+        if (!fixed || (instant > 0 && instant % clustered_node(run->scenario, i).period == 0)) {
+            sample_range(run, instant, time_s, i, source);
+        }
     }
 }
 
@@ -210,6 +229,9 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
     run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
     run->end =
         run->instants * run->interval; /* the head waits for the last instant's measurements less than one interval */
+    if (run->roster.kit.protocol.fixed) { /* the sink joins the last instant's tracks */
+        run->end += (sim_time)run->roster.kit.protocol.config.fixed.wait * (SIM_TIME_PER_S / MH_TICKS_PER_S);
+    }
     run->ranged = scenario->sensor.quantity == QUANTITY_RANGE;
     run->ranging = ranging_of(scenario, seed);
     run->concentrations = malloc(nodes * sizeof *run->concentrations);
@@ -261,7 +283,7 @@ int simulation_run_on(const struct host_provider *hosts, const struct scenario *
     if (scenario->network.ideal) {
         return ideal_run(scenario, seed, observer, stop, counters, error, error_size);
     }
-    struct run run = {.observer = observer};
+    struct run run = {.scenario = scenario, .observer = observer};
     int result = bring_up(&run, hosts, scenario, seed, error, error_size);
     if (result == 0) {
         result = network_run(&run.network, run.end, stop, error, error_size);

@@ -66,6 +66,15 @@
     X(REPORTS_PER_SAMPLE, "reports_per_sample", per_sample(c, of_clusters(c, c->clusters.total.reports)), "positions sent to the sink, by sampling instant") \
     X(ASKED_PER_SAMPLE, "asked_per_sample", per_sample(c, of_clusters(c, c->clusters.total.asked)), "nodes that a head asked to sample, by sampling instant") \
     X(ANSWERED_PER_SAMPLE, "answered_per_sample", per_sample(c, of_clusters(c, c->clusters.total.answered)), "of these such that measured the target") \
+    X(SUMMARIES, "summaries", c->protocol.fixed.summaries, "fixed clusters: summaries of their tracks that heads sent to the sink")              \
+    X(SUMMARIES_TAKEN, "summaries_taken", c->protocol.fixed.taken, "of these that the fusion centre took")                                       \
+    X(SUMMARIES_REPEATED, "summaries_repeated", c->protocol.fixed.repeated, "of these that it had already: the acknowledgement was lost")        \
+    X(SUMMARIES_OVERDUE, "summaries_overdue", c->protocol.fixed.overdue, "of these of a time that was fused already")                            \
+    X(SUMMARIES_REFUSED, "summaries_refused", c->protocol.fixed.refused, "messages to heads and sink that were no summaries, or of no cluster")  \
+    X(FUSED, "fused", c->protocol.fixed.fused, "positions of the fusion centre")                                                                 \
+    X(CORRECTED, "corrected", c->protocol.fixed.corrected, "times that a cluster's track took what the centre fed back")                         \
+    X(UNCORRECTED, "uncorrected", c->protocol.fixed.uncorrected, "times that it did not, because it was too old")                                \
+    X(HEADS_TAKEN_OVER, "heads_taken_over", c->protocol.fixed.taken_over, "fixed clusters: times that a member led because the head was silent") \
     X(PCRB_M, "pcrb_m", of_bounds(c, c->bounds.pcrb_m), "ranged walk, or fixed clusters: the posterior Cramer-Rao bound of position_rmse_m")              \
     X(CCRB_M, "ccrb_m", of_bounds(c, c->bounds.ccrb_m), "fixed clusters: the bound along the run's own path") \
     X(LOCAL_CCRB_M_1, "local_ccrb_m_1", of_bounds(c, c->bounds.local_ccrb_m[0]), "the same of the first fixed cluster by itself") \

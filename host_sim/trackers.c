@@ -1,6 +1,7 @@
 #include "trackers.h"
 
 #include "radio/radio.h"
+#include "roster.h"
 #include "world/clusters.h"
 #include "world/mobility.h"
 
@@ -303,6 +304,29 @@ static void set_up_cluster(struct protocol_choice *choice, const struct scenario
                                                     : half;
 }
 
+static void set_up_fixed(struct protocol_choice *choice, const struct scenario *scenario)
+{
+    struct mh_fixed_config *config = &choice->config.fixed;
+    choice->protocol = &mh_protocol_fixed;
+    choice->fixed = true;
+    mh_fixed_config_default(config);
+    for (size_t i = 0; i < clusters_nodes(scenario); i++) {
+        const struct point place = clustered_place(scenario, i);
+        choice->members[i] = (struct mh_fixed_member){(mh_node_id)i, place_from_metres(place.x_m, place.y_m, 0)};
+    }
+    for (size_t r = 0; r < clusters_count(scenario); r++) {
+        choice->clusters[r] = (struct mh_fixed_cluster){&choice->members[clusters_first(scenario, r)],
+                                                        (uint8_t)clusters_size(scenario, r)};
+    }
+    config->port = &mh_mote_fixed;
+    config->clusters = choice->clusters;
+    config->cluster_count = (uint8_t)clusters_count(scenario);
+    config->report_interval = config->fuse_interval = ticks(scenario->fusion.report_s);
+    config->wait = ticks(fmin(scenario->fusion.wait_s, scenario->fusion.report_s));
+    config->acknowledges = scenario->fusion.rule == MH_FUSION_HIF || scenario->fusion.rule == MH_FUSION_HIF_FEEDBACK;
+    config->hello_period = ticks(scenario->protocol.hello_s);
+}
+
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
                     size_t error_size)
 {
@@ -319,11 +343,15 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         set_up_cluster(choice, scenario);
         return 0;
     }
+    if (strcmp(name, mh_protocol_fixed.name) == 0) {
+        set_up_fixed(choice, scenario);
+        return 0;
+    }
     if (strcmp(name, chatter_protocol.name) == 0) {
         choice->protocol = &chatter_protocol;
         choice->config.chatter.interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S);
         return 0;
     }
-    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct, cluster or chatter", name);
+    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct, cluster, fixed or chatter", name);
     return -1;
 }

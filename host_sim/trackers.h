@@ -9,9 +9,11 @@
 #include "motehound/diffusion.h"
 #include "motehound/direct.h"
 #include "motehound/election.h"
+#include "motehound/fixed.h"
 #include "motehound/fusion_centre.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
+#include "motehound/mote.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
@@ -42,18 +44,24 @@ struct centre_choice {
     struct mh_fusion_centre_config config;
 };
 
+/* Points into itself where clusters are fixed: not to be copied or moved. */
 struct protocol_choice {
     const struct mh_protocol *protocol;
     /* Each node with a sensor can be head, the sink is none, and sensors sample when they are asked; else the sink is the only head, and
      * sensors sample at every instant. */
     bool in_turns;
+    /* The nodes are heads likewise, each of a cluster of its own, but sensors sample at rates of their own; the sink has a centre. */
+    bool fixed;
     union {
         struct mh_collection_config collection;
         struct mh_geographic_collection_config geographic;
         struct mh_direct_config direct;
         struct mh_cluster_config cluster; /* but for the sink, which the roster knows */
+        struct mh_fixed_config fixed;     /* likewise */
         struct chatter_config chatter;
     } config;
+    struct mh_fixed_cluster clusters[SCENARIO_NUMBERS_MAX]; /* of `fixed` */
+    struct mh_fixed_member members[CLUSTERED_NODES_MAX];
 };
 
 /* The tracker that scenario->tracker names. `region` is where the source can be; NULL: unbounded. Returns 0, or -1 with one line in

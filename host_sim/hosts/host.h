@@ -17,6 +17,8 @@ struct host_mote {
     struct mh_place place;
     const struct mh_sensor_config *sensor; /* NULL: none */
     const struct mh_head_config *head;     /* NULL: does not compute; tracker_state is ignored */
+    const struct mh_centre *centre;        /* NULL: joins no tracks */
+    const void *centre_config;
     const struct mh_protocol *protocol;
     const void *protocol_config;
     struct local_clock clock;

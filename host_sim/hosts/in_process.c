@@ -39,6 +39,7 @@ struct slot {
     struct in_process *host;
     struct head_memory *head;       /* NULL on a mote that does not compute */
     struct mh_clock *network_clock; /* NULL on a mote that keeps no network time; the host's to free */
+    void *centre_state;             /* NULL on a mote that joins no tracks; likewise */
     union any protocol_state[];
 };
 
@@ -150,6 +151,9 @@ static void start(struct slot *slot)
     if (slot->head && slot->mote.config) { /* anew */
         memset(&slot->head->head, 0, sizeof slot->head->head);
         memset(slot->head->tracker_state, 0, slot->head->config.tracker->state_size);
+    }
+    if (slot->centre_state) {
+        memset(slot->centre_state, 0, slot->config.centre->state_size);
     }
     memset(&slot->mote, 0, sizeof slot->mote);
     if (host->now > 0) {
@@ -304,6 +308,15 @@ static int add(void *state, uint32_t mote, const struct host_mote *what)
         slot->config.clock_config = what->sync;
         slot->config.clock_state = slot->network_clock;
     }
+    if (what->centre) {
+        slot->centre_state = malloc(what->centre->state_size);
+        if (!slot->centre_state) {
+            return -1;
+        }
+        slot->config.centre = what->centre;
+        slot->config.centre_config = what->centre_config;
+        slot->config.centre_state = slot->centre_state;
+    }
     if (what->head) {
         const size_t size = sizeof(struct head_memory) + what->head->tracker->state_size;
         struct head_memory *memory = memory_reserve(size);
@@ -387,6 +400,7 @@ static void destroy(void *state)
     }
     for (uint32_t i = 0; i < host->count; i++) {
         free(slot_of(host, i)->network_clock);
+        free(slot_of(host, i)->centre_state);
     }
     event_queue_free(&host->alarms);
     free(host->slots);

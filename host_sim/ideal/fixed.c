@@ -27,6 +27,7 @@ struct run {
     uint64_t sample, report_every; /* sampling instants */
     struct truth truth;
     uint64_t measurements;
+    struct mh_fixed_counters counters;
 };
 
 static mh_tick now(const struct run *run) { return (mh_tick)llround(run->truth.time_s * MH_TICKS_PER_S); }
@@ -89,12 +90,14 @@ static void report(struct run *run, size_t head)
     if (tracker->summarise(run->tracks[head], now(run), bytes, &length) != MH_OK) {
         return;
     }
+    run->counters.summaries++;
     if (random_uniform(run->losses, run->sample * run->heads + head) < run->scenario->fusion.report_loss) {
         return;
     }
     const enum mh_status status = run->centre.centre->take(run->centre_state, (uint8_t)head, now(run), bytes, length);
     if (status == MH_OK || status == MH_ERR_REPEATED) {
         tracker->summary_taken(run->tracks[head], now(run));
+        run->counters.taken++;
     }
 }
 
@@ -104,7 +107,9 @@ static void feed_back(struct run *run)
     size_t length;
     if (run->centre.centre->feedback(run->centre_state, bytes, &length) == MH_OK) {
         for (size_t head = 0; head < run->heads; head++) {
-            (void)run->tracker.tracker->correct(run->tracks[head], now(run), bytes, length);
+            const bool corrected = run->tracker.tracker->correct(run->tracks[head], now(run), bytes, length) == MH_OK;
+            run->counters.corrected += corrected;
+            run->counters.uncorrected += !corrected;
         }
     }
 }
@@ -136,6 +141,7 @@ static void sample(struct run *run)
     struct mh_estimate fused;
     if (reports && run->centre.centre != NULL &&
         run->centre.centre->fuse(run->centre_state, now(run), &fused) == MH_OK) {
+        run->counters.fused++;
         tell(run, &fused);
         feed_back(run);
     }
@@ -244,6 +250,7 @@ int ideal_fixed_run(const struct scenario *scenario, uint64_t seed, const struct
         const double none = (double)NAN;
         *counters = (struct simulation_counters){.samples = run.sample,
                                                  .head.measurements = (uint32_t)run.measurements,
+                                                 .protocol.fixed = run.counters,
                                                  .energy = energy_total_unknown(),
                                                  .clock_error_median_ms = none,
                                                  .clock_error_p99_ms = none,

@@ -62,6 +62,7 @@ const struct scenario_key scenario_keys[] = {
     {"fusion.rule", KEY_CHOICE, AT(fusion.rule), "ci", 0, 0, "ci|ci_trace_opt|ci_det|sci|ici|ei|hif|hif_feedback|naive|central", "fixed: how the sink joins what clusters say: covariance intersection with weights by the traces or optimal ones, split covariance, inverse covariance or ellipsoidal intersection, increments of information, without or with the result told to the clusters, as if independent; central: the sink has all samples itself"},
     {"fusion.report_s", KEY_NUMBER, AT(fusion.report_s), "1", 0.1, 3600, NULL, "fixed: between what a cluster tells the sink"},
     {"fusion.report_loss", KEY_NUMBER, AT(fusion.report_loss), "0", 0, 1, NULL, "fixed, ideal: probability that the sink does not get it"},
+    {"fusion.wait_s", KEY_NUMBER, AT(fusion.wait_s), "0.5", 0.01, 3600, NULL, "fixed: the sink waits for what clusters tell this long, at most fusion.report_s"},
     {"fusion.keep_s", KEY_NUMBER, AT(fusion.keep_s), "10", 0, 3600, NULL, "fixed: what a cluster told last stands, predicted, for what is lost, until it is this old (all rules but hif*, which lose nothing)"},
     {"traffic.sources", KEY_COUNT, AT(traffic.sources), "0", 0, 1e6, NULL, "path none: nodes that report once in sensor.interval_s, each at its own time"},
     {"sensor.quantity", KEY_CHOICE, AT(sensor.quantity), "concentration", 0, 0, "concentration|range", "what is measured: the source's diffusing substance, or how far the target is"},

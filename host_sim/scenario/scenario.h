@@ -106,6 +106,7 @@ struct scenario {
         enum mh_fusion_rule rule;
         double report_s;    /* between reports of the clusters to the centre */
         double report_loss; /* probability that one is lost; of an ideal network */
+        double wait_s;      /* the centre waits for reports so long */
         double keep_s;      /* a silent cluster's last report is predicted for so long */
     } fusion;
     struct {

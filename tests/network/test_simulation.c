@@ -286,12 +286,12 @@ static void refuses_what_it_cannot_run(void)
     static char unknown[] = "magic", range[] = "range";
     struct scenario scenario = e1();
     scenario.tracker.name = unknown;
-    assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo, range, pftl, msl or centroid");
+    assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf or cv_ekf");
     scenario.tracker.name = range;
     assert_refused(&scenario, "tracker.name: `range` works on ranges");
     scenario = e1();
     scenario.network.protocol = unknown;
-    assert_refused(&scenario, "network.protocol: `magic`, expected collection, direct, cluster or chatter");
+    assert_refused(&scenario, "network.protocol: `magic`, expected collection, direct, cluster, fixed or chatter");
     scenario = e1();
     scenario.tracker.diffusion_m2ps = -1;
     assert_refused(&scenario, "tracker.*");
