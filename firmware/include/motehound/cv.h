@@ -19,7 +19,7 @@
  * - SPLIT: P = Pd + Pi. Pd, what comes from the prior and the process noise, which other heads share, begins as the start covariance and follows
  *   Pd <- A (F Pd F' + Q) A', A = I - K H, of the UKF with H = Pxz' P^-1; Pi = P - Pd comes from the noise of the own samples.
  * - INCREMENT: what the track knows more than its reference, predicted to the same time. The reference is at first the start, and then the track as it was told in the last
- *   summary, when summary_taken() says that the centre has that. A head that begins after config.start says so by `since`.
+ *   summary of which summary_taken() says that the centre has it. A head that begins after config.start says so by `since`.
  *
  * correct() takes a PLAIN or FUSED summary of `time`, which replaces the state then; samples from after `time` are filtered anew on it. If the last summary, of that time, is not
  * known to be taken, what it told is added first. MH_ERR_TIME: a sample from after `time` is settled already (config.lag must be longer than the feedback takes), or the
@@ -48,6 +48,19 @@
 #error "MH_CV_SAMPLES_MAX must be 4 to 4096: a position takes a few ranges, and the table is searched linearly"
 #endif
 
+/* Summaries, with INCREMENT, of which it is not known whether the centre has them: the track of each is kept, 64 bytes and more with MH_STATES_MAX above 4. Where the centre
+ * is said to have one that is not kept any more, the newest stands for it: what these have told is left out, rather than counted twice. */
+#ifndef MH_CV_TOLD_MAX
+#ifdef __AVR__
+#define MH_CV_TOLD_MAX 2
+#else
+#define MH_CV_TOLD_MAX 4
+#endif
+#endif
+#if MH_CV_TOLD_MAX < 1 || MH_CV_TOLD_MAX > 100
+#error "MH_CV_TOLD_MAX must be 1 to 100"
+#endif
+
 /* A node whose ranges are not as noisy as the others'. */
 struct mh_cv_noise {
     mh_node_id node;
@@ -68,7 +81,7 @@ struct mh_cv_config {
     enum mh_summary_kind summary;                     /* PLAIN, SPLIT or INCREMENT. Nominal PLAIN */
 };
 
-/* Of samples, but for the last two. */
+/* Of samples, but for the last three. */
 struct mh_cv_counters {
     uint32_t taken;
     uint32_t reordered; /* of these: later ones, or others of their instant, had been filtered before */
@@ -79,6 +92,7 @@ struct mh_cv_counters {
     uint32_t hurried;   /* settled early for want of room */
     uint32_t corrected; /* times that the track was corrected ... */
     uint32_t refused;   /* ... or should have been, and was not */
+    uint32_t left_out;  /* times that what a summary had told was left out of all increments: see MH_CV_TOLD_MAX */
 };
 
 /* A track at a time. */
@@ -109,10 +123,15 @@ struct mh_cv {
     struct mh_cv_track latest;                      /* after the first `filtered` of the kept samples */
     struct mh_cv_sample samples[MH_CV_SAMPLES_MAX]; /* by time, node and target */
     uint16_t count, filtered;
-    /* with INCREMENT: the reference, as it was at a time, the name under which the centre knows it, and the track as it was told in the last summary */
-    struct mh_gaussian reference, told;
-    mh_tick reference_time, since, told_time;
-    bool tells; /* `told` holds, and is not known to be taken */
+    /* with INCREMENT: the reference, as it was at a time, and the name under which the centre knows it; the track as it was told in the last summaries, oldest first,
+     * of which it is not known whether the centre has them */
+    struct mh_gaussian reference;
+    mh_tick reference_time, since;
+    struct mh_cv_told {
+        mh_tick time;
+        struct mh_gaussian state;
+    } told[MH_CV_TOLD_MAX];
+    uint8_t told_count;
     struct mh_cv_counters counters;
 };
 

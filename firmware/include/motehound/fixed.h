@@ -17,7 +17,8 @@
  *   - The head falls silent: a member that has heard nothing of it for `patience` report intervals, and one more for each member before it, leads, and begins a new track. What was sent to
  *     the head meanwhile is lost.
  *   - Two heads hear of each other: the one that has led longer goes on, of two equal ones the lower identifier. So a first member that restarts leads until it hears the head.
- *   - A summary is lost: the centre does without it, as its rule has it. If only its acknowledgement is: summary.h.
+ *   - A summary is lost: the centre does without it, as its rule has it. If only its acknowledgement is, the centre refuses the next one, which counts from before (MH_ERR_REPEATED),
+ *     and the head is told again which one is the last that the centre has.
  *   - What is not from a member of the cluster, of no cluster, or not what a tracker writes is refused and counted.
  *   - The network's time becomes known, or jumps: heads lead no more, and all begin anew, the centre too.
  *
@@ -99,8 +100,9 @@ struct mh_fixed {
     /* what comes in parts: at the sink of each cluster, at a head from the sink */
     struct mh_fixed_incoming {
         struct mh_parcel parcel;
-        uint8_t head; /* sink: the member that the last summary came from */
-        bool has_head;
+        uint8_t head;  /* sink: the member that the last summary came from, ... */
+        mh_tick taken; /* ... and the last that the centre has taken */
+        bool has_head, has_taken;
         uint8_t bytes[MH_SUMMARY_BYTES_MAX];
     } incoming[MH_FIXED_CLUSTERS_MAX];
     struct mh_fixed_counters counters;

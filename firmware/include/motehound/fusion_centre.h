@@ -5,11 +5,11 @@
  * When none is left the last fused estimate is predicted. Rules of pairs take the clusters in their order.
  *
  * **Increments**: the estimate, at first config.start, is predicted from summary to summary, in the order of time and cluster, and each adds to it what it has learned. An
- * increment waits until it is fused; each cluster has room for one. One that began before the last that its cluster was thanked for holds measurements for the
- * second time (the thanks were lost): it is MH_ERR_REPEATED, and what is new in it is given up for the sake of honesty.
+ * increment waits until it is fused; each cluster has room for one. One that began before the last that was taken of its cluster holds measurements for the
+ * second time (the acknowledgement was lost): it is MH_ERR_REPEATED.
  *
- * **What to tell the heads** of a summary, by what take() returns: MH_OK and MH_ERR_REPEATED are acknowledged (tracker.h, summary_taken). The others are not: MH_ERR_TIME
- * (before the cluster's last, before what is fused for increments, or more than MH_FUSION_AHEAD after it), MH_ERR_CAPACITY (an increment of the cluster
+ * **What to tell the heads** of a summary, by what take() returns: after MH_OK that it is taken (tracker.h, summary_taken), after MH_ERR_REPEATED which was the last that is. After the
+ * others nothing: MH_ERR_TIME (before the cluster's last, before what is fused for increments, or more than MH_FUSION_AHEAD after it), MH_ERR_CAPACITY (an increment of the cluster
  * waits), MH_ERR_CORRUPT (not a summary of the rule's kind), MH_ERR_ARGUMENT (no such cluster). Increments are not lost then: the head counts on from its
  * last one that was acknowledged.
  *

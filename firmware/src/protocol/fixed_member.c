@@ -9,11 +9,19 @@ static const struct mh_fixed_cluster *own(const struct mh_fixed *f) { return &f-
 
 const struct mh_fixed_member *mh_fixed_head(const struct mh_fixed *f) { return &own(f)->members[f->head]; }
 
-/* The members before this one look for a silent head earlier. */
+/* How many members look for a silent head earlier than this one. */
+static mh_tick before(const struct mh_fixed *f) { return f->head < f->rank ? f->rank - 1u : f->rank; }
+
 static void wait_for_head(struct mh_fixed *f)
 {
-    const mh_tick before = f->head < f->rank ? f->rank - 1u : f->rank;
-    mh_fixed_set(f, MH_FIXED_WATCH, f->time + (f->config->patience + before) * f->config->report_interval);
+    mh_fixed_set(f, MH_FIXED_WATCH, f->time + (f->config->patience + before(f)) * f->config->report_interval);
+}
+
+/* The head has not been heard for so long that another that says it leads is believed. */
+static bool is_silent(const struct mh_fixed *f)
+{
+    const mh_tick left = (before(f) + 1) * f->config->report_interval;
+    return !f->heard || !mh_tick_before(f->time + left, f->due[MH_FIXED_WATCH]);
 }
 
 static void follow(struct mh_fixed *f, uint8_t head, mh_tick since)
@@ -94,7 +102,7 @@ void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said)
             f->node->port->follow(f->node->context);
             follow(f, member, since);
         }
-    } else if (!f->heard || member == f->head || outranks(f, member, since)) {
+    } else if (is_silent(f) || member == f->head || outranks(f, member, since)) {
         follow(f, member, since);
     }
 }

@@ -9,7 +9,7 @@ static void plan(struct mh_fixed *f, mh_tick time)
 void mh_fixed_begin_sink(struct mh_fixed *f)
 {
     for (uint8_t i = 0; i < f->config->cluster_count; i++) {
-        f->incoming[i].parcel.begun = f->incoming[i].has_head = false;
+        f->incoming[i].parcel.begun = f->incoming[i].has_head = f->incoming[i].has_taken = false;
     }
     (void)f->config->port->begin(f->node->context); /* without a centre there is nothing to fuse */
     plan(f, mh_tick_aligned(0, f->config->fuse_interval, f->time + 1));
@@ -44,12 +44,14 @@ void mh_fixed_fuse(struct mh_fixed *f)
 
 static void take(struct mh_fixed *f, uint8_t cluster, const struct mh_fixed_member *head, mh_tick time)
 {
-    const struct mh_fixed_incoming *incoming = &f->incoming[cluster];
+    struct mh_fixed_incoming *incoming = &f->incoming[cluster];
     const enum mh_status status =
         f->config->port->take(f->node->context, cluster, time, incoming->bytes, incoming->parcel.length);
     switch (status) {
     case MH_OK:
         f->counters.taken++;
+        incoming->taken = time;
+        incoming->has_taken = true;
         break;
     case MH_ERR_REPEATED:
         f->counters.repeated++;
@@ -62,9 +64,9 @@ static void take(struct mh_fixed *f, uint8_t cluster, const struct mh_fixed_memb
         f->counters.refused++;
         break;
     }
-    if (f->config->acknowledges && (status == MH_OK || status == MH_ERR_REPEATED)) {
+    if (f->config->acknowledges && incoming->has_taken && (status == MH_OK || status == MH_ERR_REPEATED)) {
         struct mh_message message = {.kind = MH_MESSAGE_TAKEN,
-                                     .as.taken = {.time_ms = (int32_t)time, .cluster = cluster}};
+                                     .as.taken = {.time_ms = (int32_t)incoming->taken, .cluster = cluster}};
         (void)mh_fixed_send(f, &message, head->id, &head->place); /* counts what it refuses */
     }
 }

@@ -412,6 +412,24 @@ static enum mh_status increment_of(const struct mh_cv *cv, const struct mh_gauss
     return status;
 }
 
+static void forget_told(struct mh_cv *cv, uint8_t count)
+{
+    cv->told_count = (uint8_t)(cv->told_count - count);
+    memmove(cv->told, cv->told + count, cv->told_count * sizeof cv->told[0]);
+}
+
+static void note_told(struct mh_cv *cv, const struct mh_cv_track *track)
+{
+    if (cv->told_count > 0 && !mh_tick_before(cv->told[cv->told_count - 1].time, track->time)) {
+        cv->told_count--; /* told once more */
+    }
+    if (cv->told_count == MH_CV_TOLD_MAX) {
+        forget_told(cv, 1);
+    }
+    cv->told[cv->told_count].time = track->time;
+    cv->told[cv->told_count++].state = track->state;
+}
+
 static enum mh_status summarise(void *state, mh_tick time, uint8_t *bytes, size_t *length)
 {
     struct mh_cv *cv = state;
@@ -434,9 +452,9 @@ static enum mh_status summarise(void *state, mh_tick time, uint8_t *bytes, size_
     case MH_SUMMARY_INCREMENT:
         summary.since = cv->since;
         status = increment_of(cv, &track.state, time, &summary.of.increment);
-        cv->told = track.state;
-        cv->told_time = time;
-        cv->tells = status == MH_OK;
+        if (status == MH_OK) {
+            note_told(cv, &track);
+        }
         break;
     case MH_SUMMARY_SPLIT:
         summary.of.split.dependent = track.state;
@@ -454,13 +472,26 @@ static enum mh_status summarise(void *state, mh_tick time, uint8_t *bytes, size_
     return MH_OK;
 }
 
+/* The centre has that summary, or one before it that is forgotten. */
+static void refer_to(struct mh_cv *cv, uint8_t told)
+{
+    cv->reference = cv->told[told].state;
+    cv->reference_time = cv->since = cv->told[told].time;
+    forget_told(cv, (uint8_t)(told + 1));
+}
+
 static void summary_taken(void *state, mh_tick time)
 {
     struct mh_cv *cv = state;
-    if (cv->tells && cv->told_time == time) {
-        cv->reference = cv->told;
-        cv->reference_time = cv->since = time;
-        cv->tells = false;
+    for (uint8_t i = 0; i < cv->told_count; i++) {
+        if (cv->told[i].time == time) {
+            refer_to(cv, i);
+            return;
+        }
+    }
+    if (cv->told_count > 0 && mh_tick_before(cv->since, time) && mh_tick_before(time, cv->told[0].time)) {
+        cv->counters.left_out++;
+        refer_to(cv, (uint8_t)(cv->told_count - 1));
     }
 }
 
@@ -491,19 +522,20 @@ static enum mh_status correct(update_function update, struct mh_cv *cv, mh_tick 
         cv->counters.refused++;
         return MH_ERR_CORRUPT;
     }
+    const struct mh_cv_told *last = cv->told_count > 0 ? &cv->told[cv->told_count - 1] : NULL;
     if (!cv->stepped || mh_tick_before(cv->time, time) || mh_tick_before(time, cv->settled.time) ||
-        (cv->tells && cv->told_time != time)) {
+        (last && last->time != time)) {
         cv->counters.refused++;
         return MH_ERR_TIME;
     }
     struct mh_gaussian corrected = summary.of.plain;
-    if (cv->tells && (increment_of(cv, &cv->told, time, &increment) != MH_OK ||
-                      mh_fusion_add(&summary.of.plain, &increment, 1, &corrected) != MH_OK)) {
+    if (last && (increment_of(cv, &last->state, time, &increment) != MH_OK ||
+                 mh_fusion_add(&summary.of.plain, &increment, 1, &corrected) != MH_OK)) {
         corrected = summary.of.plain; /* what was told is of no use */
     }
     cv->reference = summary.of.plain;
     cv->reference_time = cv->since = time;
-    cv->tells = false;
+    cv->told_count = 0;
     cv->counters.corrected++;
     replace(cv, update, time, &corrected);
     return MH_OK;

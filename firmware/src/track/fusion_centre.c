@@ -120,8 +120,6 @@ static enum mh_status take(void *state, uint8_t cluster, mh_tick time, const uin
         }
         if (status == MH_OK) {
             keep(&centre->slots[cluster], time, &summary);
-        } else if (status == MH_ERR_REPEATED && mh_tick_before(centre->slots[cluster].time, time)) {
-            centre->slots[cluster].time = time; /* its head is thanked for it and begins anew there */
         }
     }
     count(&centre->counters, status);
