@@ -129,7 +129,12 @@ static void one_update_is_the_published_one(void)
 
 /* ---- many, at different rates ---- */
 
-enum { NODES = 4, STEPS = 24, LAG = 2 };
+enum {
+    NODES = 4,
+    STEPS = 24,
+    LAG = 2,
+    AT_ONCE = 7
+}; /* of three ticks at most two are even and one is a third: six samples, and one to look at */
 
 static const struct anchor anchors[NODES] = {{25000, 40000}, {-3000, 9000}, {31000, 5000}, {2000, 44000}};
 static const uint8_t periods[NODES] = {2, 2, 3, 3}; /* ticks */
@@ -157,7 +162,7 @@ static void run(const struct mh_tracker *tracker, uint32_t salt)
     const mh_tick start = config.start;
     begin(tracker, &state);
     for (int k = 1; k <= STEPS + LAG; k++) {
-        struct mh_measurement set[NODES * (LAG + 1)];
+        struct mh_measurement set[AT_ONCE];
         size_t count = 0;
         for (int d = 0; d <= LAG; d++) {
             for (uint8_t node = 0; node < NODES; node++) {
