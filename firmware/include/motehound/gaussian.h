@@ -74,8 +74,9 @@ void mh_root_turn_begin(struct mh_root_turn *turn, uint8_t n, const mh_real *c, 
 mh_real mh_root_turn_row(const struct mh_root_turn *turn, mh_real *row, uint8_t length);
 void mh_gaussian_root_apply(struct mh_gaussian_root *root, const struct mh_root_turn *turn);
 
-/* P = L L', with every pivot at least MH_PIVOT_FLOOR of its diagonal element, so that it remains a covariance in mh_real. `gaussian` is untouched after
- * an error: MH_ERR_NOT_FINITE (a state or a variance), MH_ERR_SINGULAR (a variance too small for mh_real). */
+/* P = L L'. Where its correlations are so near to singular that rounding could take a pivot, here or on the machine that P is sent to, every variance is
+ * raised by MH_PIVOT_FLOOR of it, so that P can be factored again. `gaussian` is untouched after an error: MH_ERR_NOT_FINITE (a state or a variance),
+ * MH_ERR_SINGULAR (a variance too small for mh_real). */
 enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh_gaussian_root *root);
 
 /* The same for x and P as they came out of a sum of products: `gaussian` itself is checked, and its pivots raised where rounding has swallowed them. Its

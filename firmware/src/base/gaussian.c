@@ -6,6 +6,9 @@
 
 #define SMALLEST 1.2e-38f /* of the normal floats */
 
+/* A determinant of correlations from which on rounding, of some 1e-6, does no harm. */
+#define WELL_CONDITIONED (1.0f / 16384.0f)
+
 /* Numbers in use of a packed matrix of n states. */
 static uint_fast8_t packed_size(uint8_t n) { return (uint_fast8_t)MH_PACKED_SIZE(n); }
 
@@ -243,28 +246,24 @@ void mh_gaussian_root_take(struct mh_gaussian_root *root, const mh_real *c, mh_r
 enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh_gaussian_root *root)
 {
     const uint8_t n = root->n;
-    mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)], L[MH_PACKED_SIZE(MH_STATES_MAX)];
+    mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)], shares = 1; /* of the pivots in their variances, multiplied */
     if (!all_finite(root->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
     memcpy(P, root->L, packed_size(n) * sizeof P[0]);
     mh_cholesky_multiply(n, P);
     for (uint_fast8_t i = 0; i < n; i++) {
-        mh_real *variance = P + MH_PACKED(i, i);
-        const mh_real lost = MH_PIVOT_FLOOR * *variance - mh_squared(root->L[MH_PACKED(i, i)]);
-        if (!mh_finite(*variance)) {
+        const mh_real variance = P[MH_PACKED(i, i)];
+        if (!mh_finite(variance)) {
             return MH_ERR_NOT_FINITE;
         }
-        if (*variance < SMALLEST) {
+        if (variance < SMALLEST) {
             return MH_ERR_SINGULAR;
         }
-        *variance += mh_max(lost, 0);
+        shares *= mh_squared(root->L[MH_PACKED(i, i)]) / variance;
     }
-    /* where several pivots are small, one can fall to the rounding of the elements before it, here or on the machine that reads P: it takes a floor
-     * under every eigenvalue then */
-    bool raised;
-    memcpy(L, P, packed_size(n) * sizeof P[0]);
-    if (mh_cholesky_factor_raised(n, L, &raised) != MH_OK || raised) {
+    /* Of the correlations, the product is the determinant, and the least eigenvalue no less than that over e. */
+    if (!(shares >= WELL_CONDITIONED)) {
         for (uint_fast8_t i = 0; i < n; i++) {
             P[MH_PACKED(i, i)] *= 1.0f + MH_PIVOT_FLOOR;
         }
