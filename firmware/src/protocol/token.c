@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-#define HELLOS_AT_START 3
+#define HELLOS_AT_START                                                                                                \
+    5 /* face routing needs two of each neighbour; where a tenth is lost, 1 pair in 2,000 lacks them */
 #define WELCOME_SPREAD 4000          /* ticks: over so many the neighbours of a newcomer spread their hellos */
 #define WELCOME_PAUSE 10000          /* ticks: nobody says hello to newcomers more often */
 #define LIST_PAUSE 50                /* ticks between a hello and the neighbours told of, and between lists of these */
@@ -229,8 +230,10 @@ static void say_hello(struct mh_token_node *t)
     } else {
         mh_token_set(t, MH_TOKEN_HELLO, t->time + period - mh_spread(t->node->id, t->hellos, period / 4));
     }
-    t->told = 0;
-    mh_token_set(t, MH_TOKEN_VICINITY, t->time + LIST_PAUSE);
+    if (t->hellos >= HELLOS_AT_START - 1) {
+        t->told = 0;
+        mh_token_set(t, MH_TOKEN_VICINITY, t->time + LIST_PAUSE);
+    }
 }
 
 static void tell_of_neighbours(struct mh_token_node *t)
