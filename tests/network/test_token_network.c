@@ -62,7 +62,8 @@ static struct world {
     /* what comes of it */
     unsigned heads[HEADS_MAX], heads_count, frames, told;
     uint8_t state; /* of the last report */
-    double error_m, rate;
+    double error_m;
+    mh_real rate;
 } * w;
 
 /* ---- chance ---- */
@@ -435,7 +436,7 @@ static void without_losses_the_heads_are_those_of_the_walk(void)
         TEST_ASSERT_EQUAL(ideal.converged ? MH_SEARCH_CONVERGED : MH_SEARCH_EXHAUSTED, w->state);
         TEST_ASSERT_EQUAL(ideal.count, w->told);
         TEST_ASSERT_TRUE(fabs(ideal.error_m - w->error_m) < 0.002); /* it travels in millimetres */
-        TEST_ASSERT_TRUE(ideal.rate == (mh_real)w->rate);
+        TEST_ASSERT_TRUE(ideal.rate == w->rate);
         const struct mh_search_counters did = counters();
         TEST_ASSERT_EQUAL(1, did.begun);
         TEST_ASSERT_EQUAL(ideal.count, did.heads);
