@@ -63,7 +63,8 @@ void mh_fixed_send_bytes(struct mh_fixed *f, uint8_t cluster, mh_tick time, cons
     struct mh_message message = {
         .kind = MH_MESSAGE_HAND_OVER,
         .as.hand_over = {.track = cluster, .generation = (int32_t)time, .time_ms = (int32_t)time}};
-    for (uint8_t part = 0; part < MH_PARCEL_PARTS(length); part++) {
+    const uint8_t parts = (uint8_t)MH_PARCEL_PARTS(length);
+    for (uint8_t part = 0; part < parts; part++) {
         mh_parcel_cut(bytes, length, part, &message.as.hand_over);
         (void)mh_fixed_send(f, &message, destination, place); /* counts what it refuses */
     }

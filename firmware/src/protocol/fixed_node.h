@@ -30,7 +30,7 @@ const struct mh_fixed_member *mh_fixed_head(const struct mh_fixed *f);
 void mh_fixed_begin_member(struct mh_fixed *f);
 void mh_fixed_say(struct mh_fixed *f);
 void mh_fixed_watch(struct mh_fixed *f);
-void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *lead);
+void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said);
 void mh_fixed_hear_report(struct mh_fixed *f, const mh_report_t *report);
 void mh_fixed_hear_taken(struct mh_fixed *f, const mh_taken_t *taken);
 void mh_fixed_hear_feedback(struct mh_fixed *f, mh_node_id from, const mh_hand_over_t *part);
