@@ -72,7 +72,7 @@ static void put_in_plume(const struct mh_gas_config *config, size_t i, mh_real x
 static void put_square_from(const struct mh_gas_config *config, mh_real low)
 {
     for (size_t i = 0; i < SENSORS; i++) {
-        put_in_plume(config, i, low + 60 * (mh_real)(i % 3), 60 * ((mh_real)(i / 3) - 1), 0);
+        put_in_plume(config, i, low + 60 * (mh_real)(i % 3), 60 * (mh_real)((int)(i / 3) - 1), 0);
     }
 }
 
