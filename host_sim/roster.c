@@ -73,9 +73,10 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         return -1;
     }
     if (scenario->source.path != PATH_NONE && kit->tracker.measures != scenario->sensor.quantity) {
-        const bool ranges = kit->tracker.measures == QUANTITY_RANGE;
+        static const char *const many[] = {"concentrations", "ranges", "gas"}, *const one[] = {"concentration", "range",
+                                                                                               "gas"};
         snprintf(error, error_size, "tracker.name: `%s` works on %s, sensor.quantity is %s", scenario->tracker.name,
-                 ranges ? "ranges" : "concentrations", ranges ? "concentration" : "range");
+                 many[kit->tracker.measures], one[scenario->sensor.quantity]);
         return -1;
     }
     if (kit->sensor.interval < 1) {

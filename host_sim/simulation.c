@@ -4,6 +4,7 @@
 #include "network.h"
 #include "world/clusters.h"
 #include "world/field.h"
+#include "world/gas.h"
 #include "world/ranging.h"
 #include "world/sensor.h"
 #include "world/traffic.h"
@@ -20,8 +21,9 @@ struct run {
     struct roster roster;
     struct traffic traffic; /* where there is no source; else the next eight */
     struct field field;
-    bool ranged; /* the sensors measure how far the source is */
+    enum quantity quantity; /* that the sensors measure */
     struct ranging ranging;
+    struct gas gas;
     struct sensors sensors;
     double *concentrations;
     int32_t *counts;
@@ -45,6 +47,7 @@ static struct truth truth_at(const struct run *run, double time_s)
         truth.y_m = p.y_m;
         truth.vx_mps = v.x_m;
         truth.vy_mps = v.y_m;
+        truth.rate = run->quantity == QUANTITY_GAS ? run->gas.rate_mlps : 0;
     }
     return truth;
 }
@@ -107,24 +110,30 @@ static bool can_read(const struct run *run, uint64_t instant, double time_s, siz
     return (!run->power || run->power[node] == POWER_ON) && !sensors_lost(&run->sensors, instant, time_s, node);
 }
 
-/* Node `node` measures how far the source is, now, if it detects it; `instant` is the nearest. */
-static void sample_range(struct run *run, uint64_t instant, double time_s, uint32_t node, struct point source)
+/* Node `node` measures how far the source is, now, if it detects it, or the gas where it stands; `instant` is the nearest. */
+static void sample_alone(struct run *run, uint64_t instant, double time_s, uint32_t node, struct point source)
 {
     const struct recorded_node *place = &run->roster.deployment.nodes[node];
     const double distance_m = hypot(hypot(place->x_m - source.x_m, place->y_m - source.y_m), place->z_m);
-    double range_m;
-    if (can_read(run, instant, time_s, node) && ranging_detects(&run->ranging, instant, node, distance_m, &range_m)) {
-        network_reading(&run->network, node, sensors_convert(&run->sensors, instant, time_s, node, range_m), 0);
+    double value;
+    if (!can_read(run, instant, time_s, node)) {
+        return;
     }
+    if (run->quantity == QUANTITY_GAS) {
+        value = gas_reading(&run->gas, source, time_s, node, (struct point){place->x_m, place->y_m});
+    } else if (!ranging_detects(&run->ranging, instant, node, distance_m, &value)) {
+        return;
+    }
+    network_reading(&run->network, node, sensors_convert(&run->sensors, instant, time_s, node, value), 0);
 }
 
-static void sample_ranges(struct run *run, uint64_t instant, double time_s)
+static void sample_each(struct run *run, uint64_t instant, double time_s)
 {
     const struct point source = trajectory_position(&run->field.trajectory, time_s);
     const bool fixed = run->roster.kit.protocol.fixed;
     for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
         if (!fixed || (instant > 0 && instant % clustered_node(run->scenario, i).period == 0)) {
-            sample_range(run, instant, time_s, i, source);
+            sample_alone(run, instant, time_s, i, source);
         }
     }
 }
@@ -137,7 +146,7 @@ static void sense(void *context, uint32_t mote)
     const struct truth truth = truth_at(run, time_s);
     if (truth.present && mote < run->roster.deployment.count) {
         const uint64_t nearest = (run->network.now + run->interval / 2) / run->interval;
-        sample_range(run, nearest, time_s, mote, (struct point){truth.x_m, truth.y_m});
+        sample_alone(run, nearest, time_s, mote, (struct point){truth.x_m, truth.y_m});
     }
 }
 
@@ -168,11 +177,12 @@ static int sample(struct run *run)
         const struct truth truth = truth_at(run, time_s);
         run->observer->truth(run->observer->context, &truth);
     }
-    if (!run->ranged && sample_concentrations(run, instant, time_s)) {
+    const bool together = run->quantity == QUANTITY_CONCENTRATION;
+    if (together && sample_concentrations(run, instant, time_s)) {
         return -1;
     }
-    if (run->ranged && !run->roster.kit.protocol.in_turns) {
-        sample_ranges(run, instant, time_s);
+    if (!together && !run->roster.kit.protocol.in_turns) {
+        sample_each(run, instant, time_s);
     }
     return run->next < run->instants ? network_schedule(&run->network, run->next * run->interval) : 0;
 }
@@ -232,8 +242,9 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
     if (run->roster.kit.protocol.fixed) { /* the sink joins the last instant's tracks */
         run->end += (sim_time)run->roster.kit.protocol.config.fixed.wait * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     }
-    run->ranged = scenario->sensor.quantity == QUANTITY_RANGE;
+    run->quantity = scenario->sensor.quantity;
     run->ranging = ranging_of(scenario, seed);
+    run->gas = gas_of(scenario, seed);
     run->concentrations = malloc(nodes * sizeof *run->concentrations);
     run->counts = malloc(nodes * sizeof *run->counts);
     return run->concentrations && run->counts ? sensors_make(&run->sensors, scenario, seed, nodes) : -1;

@@ -185,6 +185,32 @@ void centre_choose(const struct scenario *scenario, struct centre_choice *choice
     start_of(scenario, config->start.x, config->start.P);
 }
 
+static void set_up_gas(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    const double towards_rad = scenario->wind.direction_rad + scenario->tracker.wind_off_rad;
+    const double least = 1e-6; /* of its unit: what the sensor resolves */
+    const double noise_ppm = scenario->tracker.noise_ppm > 0 ? scenario->tracker.noise_ppm : scenario->sensor.noise_ppm;
+    struct mh_gas_config *config = &choice->config.gas;
+    mh_gas_config_default(config);
+    config->plume.diffusion_m2ps = (mh_real)scenario->source.mixing_m2ps;
+    config->plume.wind_mps = (mh_real)(scenario->wind.speed_mps * scenario->tracker.wind_scale);
+    config->plume.downwind.x = (mh_real)cos(towards_rad);
+    config->plume.downwind.y = (mh_real)sin(towards_rad);
+    config->unit = (mh_real)scenario->sensor.unit_ppm;
+    config->noise = (mh_real)fmax(noise_ppm / scenario->sensor.unit_ppm, least);
+    config->calm_step_m = (mh_real)scenario->tracker.calm_step_m;
+    config->calm_sd_m = (mh_real)scenario->tracker.calm_sd_m;
+    const struct scenario_prior prior = scenario_prior(scenario);
+    config->prior = place_from_metres(prior.x_m, prior.y_m, 0);
+    config->prior_sd_m.x = (mh_real)prior.sd_x_m;
+    config->prior_sd_m.y = (mh_real)prior.sd_y_m;
+    config->prior_rate = (mh_real)prior.rate;
+    config->prior_rate_sd = (mh_real)prior.rate_sd;
+    if (region) {
+        config->area = *region;
+    }
+}
+
 static const struct {
     const struct mh_tracker *tracker;
     const char *meaning;
@@ -206,6 +232,13 @@ static const struct {
     {&mh_tracker_cv_ukf, "ranged target at nearly constant velocity: unscented Kalman filter, samples at any rate (Xu)",
      QUANTITY_RANGE, set_up_cv},
     {&mh_tracker_cv_ekf, "the same with an extended Kalman filter", QUANTITY_RANGE, set_up_cv},
+    {&mh_tracker_gas,
+     "gas leak in the wind: all samples of all heads, from a grid of places on which the rate is eliminated",
+     QUANTITY_GAS, set_up_gas},
+    {&mh_tracker_gas_small, "gas leak in the wind: iterated extended Kalman filter of place and logarithm of the rate",
+     QUANTITY_GAS, set_up_gas},
+    {&mh_tracker_gas_ekf, "gas leak in the wind: extended Kalman filter (Zhang et al.)", QUANTITY_GAS, set_up_gas},
+    {&mh_tracker_gas_ukf, "gas leak in the wind: unscented Kalman filter (Zhang et al.)", QUANTITY_GAS, set_up_gas},
 };
 
 enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
@@ -231,7 +264,8 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
         }
     }
     snprintf(error, error_size,
-             "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf or cv_ekf",
+             "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf, cv_ekf, gas, gas_small, "
+             "gas_ekf or gas_ukf",
              scenario->tracker.name);
     return -1;
 }

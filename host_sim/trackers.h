@@ -11,6 +11,7 @@
 #include "motehound/election.h"
 #include "motehound/fixed.h"
 #include "motehound/fusion_centre.h"
+#include "motehound/gas.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/mote.h"
@@ -33,6 +34,7 @@ struct tracker_choice {
         struct mh_pftl_config pftl;
         struct mh_msl_config msl;
         struct mh_centroid_config centroid;
+        struct mh_gas_config gas;
         struct mh_cv_config cv;
     } config;                                      /* the tracker's own */
     struct mh_cv_noise noise[CLUSTERED_NODES_MAX]; /* of fixed clusters' nodes */

@@ -312,12 +312,12 @@ struct observer bus_observer(struct bus *bus)
     const bool heard = bus->log != NULL || bus->outside != NULL;
     return (struct observer){
         .context = bus,
-        .node = heard || bus->run == 0 ? on_node : NULL,
+        .node = heard || bus->searches || bus->run == 0 ? on_node : NULL,
         .truth = on_truth,
         .estimate = on_estimate,
         .sink = on_sink,
         .local = on_local,
-        .cluster = heard ? on_cluster : NULL,
+        .cluster = heard || bus->searches ? on_cluster : NULL,
         .frame = heard ? on_frame : NULL,
         .mote = heard ? on_mote : NULL,
     };

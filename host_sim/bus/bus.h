@@ -29,6 +29,7 @@ struct bus {
     lcm_t *outside;      /* NULL or shared by all runs: LCM's publishing is thread-safe */
     lcm_eventlog_t *log; /* NULL or a standard LCM log, its timestamps the simulated time in microseconds */
     int32_t run;
+    bool searches;  /* who is heard counts (record/search.h): nodes and clusters are published in any case */
     double pace;    /* simulated seconds a second of what goes outside; 0: as fast as it is simulated */
     double began_s; /* by the machine's clock, what was simulated time 0 at that pace */
     double time_s;  /* of the last message */

@@ -39,6 +39,7 @@ static bool execute(const struct work *work, unsigned run, struct slot *slot)
                  slot->error, ERROR_SIZE) != 0) {
         return false;
     }
+    bus.searches = batch->scenario->sensor.quantity == QUANTITY_GAS;
     bool sound = recorder_subscribe(&slot->recorder, bus.lcm) == 0;
     if (!sound) {
         fail(slot->error, ERROR_SIZE, "run %u: LCM takes no subscription", run);

@@ -1,6 +1,7 @@
 #include "record/metrics.h"
 
 #include "motehound/matrix.h"
+#include "record/search.h"
 
 #include <math.h>
 #include <string.h>
@@ -120,21 +121,47 @@ static int squares_of(const struct recorder *recorder, const struct scenario *sc
     return 0;
 }
 
+static const double success_m = 50, close_success_m = 10, largest_ratio = 5;
+
+static bool is_search(const struct scenario *scenario, const motehound_track_t *track)
+{
+    return scenario->sensor.quantity == QUANTITY_GAS && track->true_known;
+}
+
+static int add_track(struct errors *errors, const motehound_track_t *track)
+{
+    const double nees = nees_of(track);
+    const double raw = hypot(track->raw_x_m - track->true_x_m, track->raw_y_m - track->true_y_m);
+    const double at_arrival = hypot(track->x_m - track->arrival_x_m, track->y_m - track->arrival_y_m);
+    const bool sound = samples_add(&errors->position, error_of(track)) == 0 &&
+                       samples_add(&errors->raw_position, raw) == 0 &&
+                       (!track->arrival_known || samples_add(&errors->position_at_arrival, at_arrival) == 0) &&
+                       add(&errors->nees, nees) == 0 && add(&errors->claimed, claim_of(track)) == 0;
+    return sound ? 0 : -1;
+}
+
+static int add_search(struct errors *errors, const struct search *search, const motehound_track_t *last)
+{
+    const double ratio = fmin(search->error_m / search->crlb_m, largest_ratio);
+    const bool judged = search->converged && search->error_m < success_m && !isnan(search->crlb_m);
+    const bool sound = add_track(errors, last) == 0 && samples_add(&errors->found, search->error_m) == 0 &&
+                       samples_add(&errors->rate, search->rate_error) == 0 &&
+                       (!judged || samples_add(&errors->efficiency, ratio) == 0);
+    return sound ? 0 : -1;
+}
+
 int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)
 {
     int64_t seen[TARGETS] = {0};
-    for (size_t i = 0; i < recorder->track_count; i++) {
+    const size_t count = recorder->track_count;
+    if (count > 0 && is_search(scenario, &recorder->tracks[count - 1])) {
+        const struct search search = search_of(recorder, scenario);
+        return add_search(errors, &search, &recorder->tracks[count - 1]);
+    }
+    for (size_t i = 0; i < count; i++) {
         const motehound_track_t *track = &recorder->tracks[i];
         const bool skipped = seen[(uint8_t)track->target]++ < scenario->metrics.skip_first;
-        if (skipped || !track->true_known) {
-            continue;
-        }
-        const double nees = nees_of(track);
-        const double raw = hypot(track->raw_x_m - track->true_x_m, track->raw_y_m - track->true_y_m);
-        const double at_arrival = hypot(track->x_m - track->arrival_x_m, track->y_m - track->arrival_y_m);
-        if (samples_add(&errors->position, error_of(track)) != 0 || samples_add(&errors->raw_position, raw) != 0 ||
-            (track->arrival_known && samples_add(&errors->position_at_arrival, at_arrival) != 0) ||
-            add(&errors->nees, nees) != 0 || add(&errors->claimed, claim_of(track)) != 0) {
+        if (!skipped && track->true_known && add_track(errors, track) != 0) {
             return -1;
         }
     }
@@ -146,6 +173,8 @@ int errors_append(struct errors *errors, const struct errors *more)
     bool sound = samples_append(&errors->position, &more->position) == 0 &&
                  samples_append(&errors->raw_position, &more->raw_position) == 0 &&
                  samples_append(&errors->position_at_arrival, &more->position_at_arrival) == 0 &&
+                 samples_append(&errors->found, &more->found) == 0 && samples_append(&errors->rate, &more->rate) == 0 &&
+                 samples_append(&errors->efficiency, &more->efficiency) == 0 &&
                  samples_append(&errors->nees, &more->nees) == 0 &&
                  samples_append(&errors->claimed, &more->claimed) == 0;
     for (int c = 0; c < LOCAL_CLUSTERS; c++) {
@@ -164,6 +193,9 @@ void errors_free(struct errors *errors)
     samples_free(&errors->position);
     samples_free(&errors->raw_position);
     samples_free(&errors->position_at_arrival);
+    samples_free(&errors->found);
+    samples_free(&errors->rate);
+    samples_free(&errors->efficiency);
     samples_free(&errors->nees);
     samples_free(&errors->claimed);
     for (int c = 0; c < LOCAL_CLUSTERS; c++) {
@@ -194,6 +226,9 @@ void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT]
     values[METRIC_POSITION_P95_M] = samples_quantile(&errors->position, 0.95);
     values[METRIC_RAW_POSITION_RMSE_M] = samples_rms(&errors->raw_position);
     values[METRIC_POSITION_RMSE_AT_ARRIVAL_M] = samples_rms(&errors->position_at_arrival);
+    values[METRIC_POSITION_ERROR_MEDIAN_M] = samples_quantile(&errors->found, 0.5);
+    values[METRIC_RATE_ERROR_MEDIAN] = samples_quantile(&errors->rate, 0.5);
+    values[METRIC_ERROR_OVER_CRLB] = samples_rms(&errors->efficiency);
     values[METRIC_NEES_MEDIAN] = samples_quantile(&errors->nees, 0.5);
     values[METRIC_ANEES] = samples_mean(&errors->nees);
     const double rmse_m = values[METRIC_POSITION_RMSE_M];
@@ -278,6 +313,22 @@ static double longest_gap_s(const struct recorder *recorder, double near_m)
     return fmax(longest_s, recorder->last_s - good_s);
 }
 
+static void metrics_of_search(const struct recorder *recorder, const struct scenario *scenario,
+                              double values[METRIC_COUNT])
+{
+    const struct search search = search_of(recorder, scenario);
+    const bool right = search.converged && search.error_m < success_m;
+    values[METRIC_SUCCESS_50M] = right;
+    values[METRIC_SUCCESS_10M] = right && search.error_m < close_success_m;
+    values[METRIC_CONVERGED] = search.converged;
+    values[METRIC_CONVERGED_WRONG] = search.converged && !right;
+    values[METRIC_HOPS] = (double)search.heads;
+    values[METRIC_SENSORS_USED] = (double)search.sensors;
+    values[METRIC_SENSORS_TO_10M] = search.sensors_to_10m;
+    values[METRIC_CRLB_M] = search.crlb_m;
+    values[METRIC_RATE_CRLB] = search.rate_crlb;
+}
+
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT])
 {
@@ -308,5 +359,11 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
     const double pcrb_m = recorder->totals[TOTAL_PCRB_M];
     values[METRIC_RMSE_OVER_PCRB] = pcrb_m > 0 ? values[METRIC_POSITION_RMSE_M] / pcrb_m : none;
     values[METRIC_LONGEST_GAP_S] = ranged ? longest_gap_s(recorder, scenario->sensor.range_m) : none;
+    for (int i = METRIC_SUCCESS_50M; i <= METRIC_RATE_CRLB; i++) {
+        values[i] = none;
+    }
+    if (truth && scenario->sensor.quantity == QUANTITY_GAS) {
+        metrics_of_search(recorder, scenario, values);
+    }
     memcpy(&values[METRIC_FIRST_TOTAL], recorder->totals, sizeof recorder->totals);
 }

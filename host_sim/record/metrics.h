@@ -6,17 +6,21 @@
 #include "record/statistics.h"
 #include "scenario/scenario.h"
 
-/* The errors of the estimates of one run, or of many together, at which the source was present; the first
- * metrics.skip_first estimates of each target are left out. */
 enum { LOCAL_CLUSTERS = 4 }; /* fixed clusters that have metrics of their own */
 
+/* The errors of the estimates of one run, or of many together, at which the source was present; the first
+ * metrics.skip_first estimates of each target are left out; of a search (sensor.quantity gas) only the last one counts. */
 struct errors {
     struct samples position;     /* m, at the sampling instant */
     struct samples raw_position; /* m, before filtering */
     struct samples
         position_at_arrival; /* m, against the truth at the time that the tracker says the position belongs to */
-    struct samples nees;     /* e' P^-1 e, of all states that the tracker states a covariance of */
-    struct samples claimed;  /* m2, variance of the position that the tracker states, both coordinates added */
+    struct samples found;    /* of a search (sensor.quantity gas) the same, m; so below */
+    struct samples rate;     /* of the rate of release, as a share of the true one */
+    struct samples
+        efficiency;         /* of the position over its Cramer-Rao bound, at most 5, where the search has succeeded */
+    struct samples nees;    /* e' P^-1 e, of all states that the tracker states a covariance of */
+    struct samples claimed; /* m2, variance of the position that the tracker states, both coordinates added */
     struct samples local_position[LOCAL_CLUSTERS], local_nees[LOCAL_CLUSTERS]; /* of fixed clusters by themselves */
     /* Of fixed clusters, all estimates: the sum of their squared errors, m2, and their number, by sampling instants since the first; and how many of these
      * instants are left out. */
@@ -32,6 +36,9 @@ struct errors {
     X(POSITION_P95_M, "position_p95_m", "95th percentile of the error")                                                     \
     X(RAW_POSITION_RMSE_M, "raw_position_rmse_m", "root mean square error before the filter")                               \
     X(POSITION_RMSE_AT_ARRIVAL_M, "position_rmse_at_arrival_m", "error against the position at the estimated time of arrival") \
+    X(POSITION_ERROR_MEDIAN_M, "position_error_median_m", "gas: median over the searches of the error of the position that they end with")  \
+    X(RATE_ERROR_MEDIAN, "rate_error_median", "gas: the same of the rate of release, as a share of the true one")          \
+    X(ERROR_OVER_CRLB, "error_over_crlb", "gas: root mean square, over the searches that succeed within 50 m, of the position's error over its Cramer-Rao bound, each at most 5") \
     X(NEES_MEDIAN, "nees_median", "median normalised squared error of all states (exact: 1.39 of two, 2.37 of three, 3.36 of four)") \
     X(ANEES, "anees", "mean normalised squared error of all states (their number is exact, more is overconfident)")         \
     X(CLAIMED_OVER_RMSE, "claimed_over_rmse", "the root mean square error that the tracker claims over that which it has")  \
@@ -55,6 +62,15 @@ struct errors {
     X(LOCALISATION_ERROR_RS, "localisation_error_rs", "ranged target: mean error of the heads' positions, as a share of sensor.range_m, from sample metrics.skip_first on") \
     X(SINK_ERROR_RS, "sink_error_rs", "clusters: the same of the positions that the sink has")                              \
     X(RMSE_OVER_PCRB, "rmse_over_pcrb", "ranged walk: position_rmse_m over pcrb_m")                                         \
+    X(SUCCESS_50M, "success_50m", "gas: 1 if the search ended by itself within 50 m of the source, else 0")                 \
+    X(SUCCESS_10M, "success_10m", "gas: the same within 10 m")                                                              \
+    X(CONVERGED, "converged", "gas: 1 if it ended by itself wherever, 0 if it was broken off")                              \
+    X(CONVERGED_WRONG, "converged_wrong", "gas: 1 if it ended by itself, but 50 m or more from the source, else 0")         \
+    X(HOPS, "hops", "gas: heads that have led the search")                                                                 \
+    X(SENSORS_USED, "sensors_used", "gas: different sensors that were heard")                                               \
+    X(SENSORS_TO_10M, "sensors_to_10m", "gas: the same until the error fell below 10 m for good")                          \
+    X(CRLB_M, "crlb_m", "gas: the Cramer-Rao bound of the position from the samples that were heard")                      \
+    X(RATE_CRLB, "rate_crlb", "gas: the same of the rate of release, as a share of it")                                    \
     X(LONGEST_GAP_S, "longest_gap_s", "ranged target: longest time without a head's position within sensor.range_m of the target")
 /* clang-format on */
 

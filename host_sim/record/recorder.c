@@ -2,6 +2,7 @@
 
 #include "bus/bus.h"
 
+#include "motehound_cluster_t.h"
 #include "motehound_totals_t.h"
 #include "motehound_truth_t.h"
 
@@ -64,6 +65,27 @@ static void on_local(const lcm_recv_buf_t *buffer, const char *channel, void *co
     }
 }
 
+static void on_cluster(const lcm_recv_buf_t *buffer, const char *channel, void *context)
+{
+    (void)channel;
+    struct recorder *recorder = context;
+    motehound_cluster_t cluster;
+    if (motehound_cluster_t_decode(buffer->data, 0, (int)buffer->data_size, &cluster) < 0) {
+        recorder->failed = true;
+        return;
+    }
+    for (int32_t i = -1; i < cluster.count; i++) {
+        if (grow((void **)&recorder->heard, recorder->heard_count, &recorder->heard_capacity,
+                 sizeof *recorder->heard)) {
+            recorder->heard[recorder->heard_count++] =
+                (struct heard){recorder->track_count, i < 0 ? cluster.head : cluster.members[i]};
+        } else {
+            recorder->failed = true;
+        }
+    }
+    motehound_cluster_t_decode_cleanup(&cluster);
+}
+
 static void on_node(const lcm_recv_buf_t *buffer, const char *channel, void *context)
 {
     (void)channel;
@@ -118,6 +140,7 @@ int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
                        lcm_subscribe(lcm, BUS_TRACK, on_track, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_SINK, on_sink, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_LOCAL, on_local, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_CLUSTER, on_cluster, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRUTH, on_truth, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TOTALS, on_totals, recorder) != NULL;
     return sound ? 0 : -1;
@@ -128,6 +151,7 @@ void recorder_free(struct recorder *recorder)
     free(recorder->tracks);
     free(recorder->sinks);
     free(recorder->locals);
+    free(recorder->heard);
     free(recorder->nodes);
     *recorder = (struct recorder){0};
 }

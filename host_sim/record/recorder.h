@@ -10,6 +10,12 @@
 #include <lcm/lcm.h>
 #include <stdbool.h>
 
+/* Node `node` was asked for the estimate number `track`, whether it had been before or not. */
+struct heard {
+    size_t track;
+    int32_t node;
+};
+
 struct recorder {
     motehound_track_t *tracks; /* in the order they came, so by time */
     size_t track_count, track_capacity;
@@ -17,6 +23,8 @@ struct recorder {
     size_t sink_count, sink_capacity;
     motehound_local_t *locals; /* what fixed clusters had, likewise */
     size_t local_count, local_capacity;
+    struct heard *heard; /* in the order they came */
+    size_t heard_count, heard_capacity;
     motehound_node_t *nodes; /* the motes, where the bus tells them */
     size_t node_count, node_capacity;
     size_t samples;             /* sampling instants at which the source was present */

@@ -57,6 +57,21 @@ struct scenario_field scenario_field(const struct scenario *scenario)
     return (struct scenario_field){side_m, side_m, side_m / 2, side_m / 2};
 }
 
+struct scenario_prior scenario_prior(const struct scenario *scenario)
+{
+    const struct scenario_field field = scenario_field(scenario);
+    const double share = 0.3; /* of the field's extent: about the sd of a place anywhere in it */
+    const double x_m = scenario->tracker.prior_x_m, y_m = scenario->tracker.prior_y_m;
+    const double sd_x_m = scenario->tracker.prior_sd_x_m, sd_y_m = scenario->tracker.prior_sd_y_m;
+    const bool said = fabs(x_m) + fabs(y_m) > 0;
+    return (struct scenario_prior){.x_m = said ? x_m : field.width_m / 2,
+                                   .y_m = said ? y_m : field.height_m / 2,
+                                   .sd_x_m = sd_x_m > 0 ? sd_x_m : share * field.width_m,
+                                   .sd_y_m = sd_y_m > 0 ? sd_y_m : share * field.height_m,
+                                   .rate = scenario->tracker.prior_rate_mlps,
+                                   .rate_sd = scenario->tracker.prior_rate_sd_mlps};
+}
+
 size_t scenario_steps(const struct scenario *scenario)
 {
     return (size_t)(scenario->source.duration_s / scenario->sensor.interval_s + 1e-9);
@@ -218,17 +233,24 @@ static int check_fixed(const struct scenario *scenario, const char *name, char *
     return 0;
 }
 
-/* Clusters follow a target that is ranged, and the ideal network has nothing but them. */
+/* Clusters follow a target that is ranged, a token walks to a source of gas, and the ideal network has nothing but them. */
 static int check_clusters(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
     const bool clusters = strcmp(scenario->network.protocol, "cluster") == 0;
+    const bool fixed = strcmp(scenario->network.protocol, "fixed") == 0;
+    const bool walks = strcmp(scenario->network.protocol, "token") == 0;
     if (check_rings(scenario, name, error, error_size) != 0 || check_fixed(scenario, name, error, error_size) != 0) {
         return -1;
     }
-    if (scenario->network.ideal && !clusters && strcmp(scenario->network.protocol, "fixed") != 0) {
+    if (scenario->network.ideal && !clusters && !fixed && !walks) {
         return fail(error, error_size,
-                    "%s: network.ideal: expected true for network.protocol cluster and fixed alone, found %s", name,
-                    scenario->network.protocol);
+                    "%s: network.ideal: expected true for network.protocol cluster, fixed and token alone, found %s",
+                    name, scenario->network.protocol);
+    }
+    if (walks && (scenario->sensor.quantity != QUANTITY_GAS || scenario->source.path == PATH_NONE)) {
+        return fail(error, error_size,
+                    "%s: network.protocol: expected token only where sensor.quantity is gas and there is a source",
+                    name);
     }
     if (clusters && (scenario->sensor.quantity != QUANTITY_RANGE || scenario->source.path == PATH_NONE)) {
         return fail(error, error_size,
@@ -292,6 +314,12 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
     if (scenario->sensor.outage_s > 0 && scenario->sensor.outage_start_s + scenario->sensor.outage_s > run_s) {
         return fail(error, error_size, "%s: sensor.outage_s: expected an end within the run of %g s, found %g s", name,
                     run_s, scenario->sensor.outage_start_s + scenario->sensor.outage_s);
+    }
+    if (scenario->network.starts > 0 &&
+        (scenario->network.layout != LAYOUT_UNIFORM || scenario->source.path != PATH_STILL)) {
+        return fail(error, error_size,
+                    "%s: network.starts: expected 0 unless network.layout is uniform and source.path still, found %lld",
+                    name, (long long)scenario->network.starts);
     }
     if (scenario->network.layout == LAYOUT_FILE && scenario->network.file[0] == '\0') {
         return fail(error, error_size, "%s: network.file: expected a nodes.csv for layout file, found nothing", name);

@@ -34,7 +34,7 @@ enum sync_kind { SYNC_NONE, SYNC_FLOODING };
 enum routing_kind { ROUTING_TREE, ROUTING_GEOGRAPHIC, ROUTING_GREEDY };
 
 /* What sensors measure and trackers work on. */
-enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE };
+enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE, QUANTITY_GAS };
 
 enum resampling_kind { RESAMPLING_PRC, RESAMPLING_SYSTEMATIC };
 
@@ -63,7 +63,13 @@ struct scenario {
         double release_variation; /* mu(t) = release (1 + variation sin(2 pi t / release_period)), 0 to 0.95 */
         double release_period_s;
         double diffusion_m2ps; /* D of the field (the tracker has its own) */
+        double rate_mlps;      /* of QUANTITY_GAS: q ... */
+        double mixing_m2ps;    /* ... and K, the air's turbulent diffusion */
+        double fluctuation;    /* sd of what comes to a sensor, as a share of its mean */
     } source;
+    struct {
+        double speed_mps, direction_rad; /* it blows towards, counter-clockwise from the x axis */
+    } wind;
     struct {
         double speed_mph;                      /* mean speed of PATH_GAUSS_MARKOV */
         double speed_sd;                       /* of the speed, as a share of its mean */
@@ -82,7 +88,9 @@ struct scenario {
         double
             density; /* mean number of nodes within sensor.range_m of a place, which then gives the field; 0: field.* does */
         double sink_x_m, sink_y_m;
-        char *protocol; /* collection, direct, cluster, fixed or chatter */
+        int64_t starts; /* consecutive seeds that share a deployment, each with its own start of the search; 0: none */
+        double start_m; /* these starts are farther than this from the source */
+        char *protocol; /* collection, direct, cluster, fixed, token or chatter */
         bool ideal;     /* clusters without frames: nothing is lost, collides or takes time */
     } network;
     struct {
@@ -92,6 +100,9 @@ struct scenario {
         int64_t members;       /* of a cluster beside its head; 0: the election rule's own number */
         int64_t horizon;       /* predicted samples that an election looks at */
         int64_t least_answers; /* fewer than so many nodes that measure the target bring about an election */
+        int64_t start;         /* token: the node that begins, unless network.starts chooses */
+        int64_t heads_max;     /* token: the search ends after so many heads ... */
+        int64_t calm;          /* ... or when so many in succession find nothing new */
         double watch_s;        /* a node that has heard of no track for a while looks for a target itself this often */
     } protocol;
     struct {
@@ -125,6 +136,8 @@ struct scenario {
         double range_noise_m;            /* sd of a range */
         double noise_correlation;        /* of the noise of two ranges of an instant */
         bool noisy_detection;            /* by the noisy range, not the true one */
+        double noise_ppm;                /* of QUANTITY_GAS: sd */
+        double unit_ppm;                 /* concentration that is 1 in what the sensor gives */
     } sensor;
     struct {
         double range_m;     /* unit disc */
@@ -196,6 +209,12 @@ struct scenario {
         bool literal;                    /* pftl: the region widens as published */
         double ukf_alpha;                /* cv_ukf: spread of the sigma points */
         double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */
+        double prior_x_m, prior_y_m, prior_sd_x_m,
+            prior_sd_y_m; /* gas: where the source is expected; 0, 0, 0, 0: the field */
+        double prior_rate_mlps, prior_rate_sd_mlps;
+        double wind_scale, wind_off_rad; /* gas: the wind as the tracker has it, from what it is */
+        double noise_ppm;                /* gas: assumed noise; 0: the sensor's */
+        double calm_step_m, calm_sd_m;   /* gas: an estimate that is calm */
     } tracker;
     struct {
         char *profile;    /* which mote's currents; `none`: energy is not accounted for */
@@ -248,6 +267,14 @@ struct scenario_field {
 /* As field.* and network.sink_* say; but where there is a network.density, the field is a square of side
  * sensor.range_m sqrt(nodes pi / density) with the sink in its middle. */
 struct scenario_field scenario_field(const struct scenario *scenario);
+
+/* Where a leak is expected and what it releases, as tracker.prior_* say; where they are 0, anywhere in the field. */
+struct scenario_prior {
+    double x_m, y_m, sd_x_m, sd_y_m;
+    double rate, rate_sd; /* mL/s */
+};
+
+struct scenario_prior scenario_prior(const struct scenario *scenario);
 
 /* Whole sampling intervals in source.duration_s. */
 size_t scenario_steps(const struct scenario *scenario);

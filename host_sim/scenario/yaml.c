@@ -10,7 +10,7 @@
 #include <string.h>
 #include <yaml.h>
 
-enum { KEYS_MAX = 192, SECTIONS_MAX = 32, FIELDS_MAX = KEYS_MAX + 2 * SECTIONS_MAX };
+enum { KEYS_MAX = 256, SECTIONS_MAX = 32, FIELDS_MAX = KEYS_MAX + 2 * SECTIONS_MAX };
 
 struct raw_point {
     char *x, *y, *speed_factor;

@@ -1,6 +1,7 @@
 #include "world/deployment.h"
 
 #include "engine/random.h"
+#include "world/campaign.h"
 #include "world/clusters.h"
 #include "world/recipe.h"
 
@@ -9,12 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void lay_uniform(struct deployment *deployment, double width_m, double height_m, uint64_t seed)
+enum { DRAWS_MAX = 10000 }; /* of a deployment that suits a campaign */
+
+static void lay_uniform(struct deployment *deployment, double width_m, double height_m, uint64_t seed, uint64_t draw)
 {
     const struct random_stream stream = random_stream(seed, RANDOM_DEPLOYMENT);
+    const uint64_t first = draw * deployment->count;
     for (size_t i = 0; i < deployment->count; i++) {
-        deployment->nodes[i].x_m = width_m * random_uniform(stream, 2 * i);
-        deployment->nodes[i].y_m = height_m * random_uniform(stream, 2 * i + 1);
+        deployment->nodes[i].x_m = width_m * random_uniform(stream, 2 * (first + i));
+        deployment->nodes[i].y_m = height_m * random_uniform(stream, 2 * (first + i) + 1);
     }
 }
 
@@ -138,9 +142,12 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
     for (size_t i = 0; i < deployment->count; i++) {
         deployment->nodes[i].id = (uint32_t)i;
     }
+    seed = campaign_deployment_seed(scenario, seed);
     switch (scenario->network.layout) {
     case LAYOUT_UNIFORM:
-        lay_uniform(deployment, field.width_m, field.height_m, seed);
+        for (uint64_t draw = 0; draw == 0 || (draw < DRAWS_MAX && !campaign_suits(scenario, deployment)); draw++) {
+            lay_uniform(deployment, field.width_m, field.height_m, seed, draw);
+        }
         break;
     case LAYOUT_R2:
         lay_r2(deployment, field.width_m, field.height_m, seed);
@@ -156,6 +163,14 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
         break;
     case LAYOUT_FILE:
         break;
+    }
+    if (!campaign_suits(scenario, deployment)) {
+        deployment_free(deployment);
+        snprintf(error, error_size,
+                 "network.starts: no deployment is connected and has %lld nodes farther than network.start_m = %g m "
+                 "from the source",
+                 (long long)scenario->network.starts, scenario->network.start_m);
+        return -1;
     }
     return 0;
 }

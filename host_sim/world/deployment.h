@@ -16,7 +16,8 @@ struct deployment {
 
 /* Lay out the nodes of scenario->network; ids are 0, 1, 2 ... but for LAYOUT_FILE, which brings its own.
  *
- * uniform: node i = (width u_2i, height u_2i+1), u from the SplitMix64 stream of `seed`.
+ * uniform: node i = (width u_2i, height u_2i+1), u from the SplitMix64 stream of `seed`; where the deployment does not suit a campaign
+ *   (campaign.h), the next numbers of the stream are taken, and so on.
  * r2: node i = (width, height) * frac(1/2 + (i + 1 + 1000 seed) * (0.7548776662466927, 0.5698402909980532)), Roberts' R2 sequence.
  * grid: cell-centred, row by row, each coordinate off the middle of its cell by up to network.jitter of the cell's side (uniform; u_2i and
  *   u_2i+1 of the same stream). Cells are squares of network.spacing_m, as many in a row as the field is wide, or fill the field: the number of columns divides the number of nodes, so that the cells are as square as can be (of
@@ -26,7 +27,8 @@ struct deployment {
  * rings: as clusters.h says.
  * file: the nodes of scenario->network.file, sorted.
  *
- * Returns 0, or -1 with one line in `error` (a file that cannot be used, no memory) and nothing to free. */
+ * With network.starts the seed is that of the campaign's deployment. Returns 0, or -1 with one line in `error` (a file that cannot be used, no
+ * deployment that suits, no memory) and nothing to free. */
 int deployment_make(struct deployment *deployment, const struct scenario *scenario, uint64_t seed, char *error,
                     size_t error_size);
 

@@ -17,6 +17,9 @@ enum recipe_purpose {
     RECIPE_START = 3, /* b: 0 for x, 1 for y, 2 for the mean heading */
     RECIPE_SPEED = 4, /* b: the step */
     RECIPE_HEADING = 5,
+    RECIPE_GAS_NOISE = 16, /* b: the millisecond and the node */
+    RECIPE_GAS_FLUCTUATION = 17,
+    RECIPE_FIRST_HEAD = 18, /* b: which of a deployment's searches */
     RECIPE_RANGE_NOISE = 1000
 };
 

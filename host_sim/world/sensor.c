@@ -7,18 +7,18 @@ struct mh_sensor_config sensor_config(const struct scenario *scenario)
 {
     const int64_t bits = scenario->sensor.adc_bits;
     const bool ideal = bits == 0;
-    const bool ranges = scenario->sensor.quantity == QUANTITY_RANGE; /* which noise can make negative */
+    const bool negative = scenario->sensor.quantity != QUANTITY_CONCENTRATION; /* by noise */
     const int32_t counts_max = ideal ? INT32_MAX : (int32_t)((INT64_C(1) << bits) - 1);
     const double quantum = ideal ? 1 : fmax(1, round(ldexp(scenario->sensor.full_scale, 20 - (int)bits)));
     return (struct mh_sensor_config){
         .q20_per_count = (int32_t)fmin(quantum, INT32_MAX),
-        .counts_min = !ranges ? 0
-                      : ideal ? INT32_MIN
-                              : -counts_max,
+        .counts_min = !negative ? 0
+                      : ideal   ? INT32_MIN
+                                : -counts_max,
         .counts_max = counts_max,
         .interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S),
         .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
-        .report_always = ranges || scenario->source.path == PATH_NONE,
+        .report_always = negative || scenario->source.path == PATH_NONE,
     };
 }
 

@@ -286,7 +286,8 @@ static void refuses_what_it_cannot_run(void)
     static char unknown[] = "magic", range[] = "range";
     struct scenario scenario = e1();
     scenario.tracker.name = unknown;
-    assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf or cv_ekf");
+    assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf, "
+                              "cv_ekf, gas, gas_small, gas_ekf or gas_ukf");
     scenario.tracker.name = range;
     assert_refused(&scenario, "tracker.name: `range` works on ranges");
     scenario = e1();

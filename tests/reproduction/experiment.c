@@ -44,6 +44,7 @@ struct figures experiment_from(uint64_t seed, const char *name, const char *sett
         (void)results_statistics(&results, (enum metric)i, &statistics);
         figures.mean[i] = statistics.mean;
         figures.sd[i] = statistics.sd;
+        figures.median[i] = statistics.median;
     }
     results_discard(&results);
     scenario_free(&scenario);

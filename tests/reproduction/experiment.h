@@ -9,6 +9,7 @@ struct figures {
     double pooled[METRIC_ERRORS_COUNT]; /* over all estimates of all runs together */
     double mean[METRIC_COUNT];          /* over the runs; NaN for what does not apply ... */
     double sd[METRIC_COUNT];            /* ... and their standard deviation */
+    double median[METRIC_COUNT];
     unsigned lost;                      /* runs whose track was lost */
 };
 

@@ -1,6 +1,7 @@
 #include "gas_common.h"
 
-#define RATE 2 /* the state q, or ln q */
+#define GRAINS 16.0f /* of information */
+#define RATE 2       /* the state q, or ln q */
 #define LOG_RATE_MAX 60.0f
 
 void mh_gas_config_default(struct mh_gas_config *config)
@@ -168,5 +169,5 @@ mh_real mh_gas_information(const struct mh_gas_config *config, const struct mh_g
             mh_gaussian_root_take(&root, along, 0, 1.0f);
         }
     }
-    return information;
+    return (mh_real)(int32_t)(information * GRAINS + 0.5f) / GRAINS;
 }

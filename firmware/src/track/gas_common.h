@@ -44,7 +44,8 @@ struct mh_estimate mh_gas_answer(const struct mh_gas_config *config, const struc
 void mh_gas_flag(const struct mh_gas_config *config, struct mh_vec2 before, uint16_t taken, bool known, bool sure,
                  struct mh_estimate *estimate);
 
-/* How much, in logarithms of the determinant of the information, samples at all of `places` would add to the estimate of (x, y, ln q). */
+/* How much, in logarithms of the determinant of the information, samples at all of `places` would add to the estimate of (x, y, ln q): in
+ * whole steps of 1 / 16, so that the same places tell the same, in whatever order they come and whatever rounding makes of it. */
 mh_real mh_gas_information(const struct mh_gas_config *config, const struct mh_gaussian *estimate,
                            const struct mh_place *places, size_t count);
 

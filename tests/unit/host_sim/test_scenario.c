@@ -106,7 +106,8 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation
         {"network: {nodes: 3}", "a.yaml:1: network.nodes: expected a whole number 4 to 1000000, found '3'", ""},
         {"network: {nodes: 4.5}", "a.yaml:1: network.nodes: expected a whole number", "'4.5'"},
         {"tracker: {name: kalman}",
-         "a.yaml:1: tracker.name: expected one of diffusion/luo/range/pftl/msl/centroid/cv_ukf/cv_ekf, found 'kalman'",
+         "a.yaml:1: tracker.name: expected one of "
+         "diffusion/luo/range/pftl/msl/centroid/cv_ukf/cv_ekf/gas/gas_small/gas_ekf/gas_ukf, found 'kalman'",
          ""},
         {"tracker: {nonlinear: yes}", "a.yaml:1: tracker.nonlinear: expected true or false, found 'yes'", ""},
         {"name: a\nname: b", "a.yaml:1: name: expected once, found twice", ""},
@@ -162,6 +163,8 @@ static void keys_that_contradict_each_other_are_refused(void)
         {"source.path", "gauss_markov", "source.duration_s", "0.5"},
         {"network.ideal", "true", "network.protocol", "collection"},
         {"network.protocol", "cluster", "sensor.quantity", "concentration"},
+        {"network.protocol", "token", "sensor.quantity", "range"},
+        {"network.starts", "10", "network.layout", "uniform"},
         {"network.density", "12", "network.layout", "file"},
         {"tracker.range_sd_m", "1e-4", "tracker.name", "range"},
         {"tracker.acceleration_sd_mps2", "1e-4", "tracker.name", "range"},
