@@ -11,7 +11,8 @@
  *   `generation` and `time_ms` the instant).
  * - `wait` after each whole number of fuse intervals the centre joins what has come for it, and the sink tells its owner. If it feeds back, that goes to the heads as summaries come.
  * - With `acknowledges` the sink tells a head of a summary that the centre has taken it (taken_t).
- * - The head says that it is there (lead_t) once a report interval. Before the first such thing the first member is taken for the head; it leads at once.
+ * - The head says that it is there (lead_t) once a report interval; its radio's acknowledgement of a sample says so too. Before anything is heard the first member is taken for
+ *   the head; it leads at once.
  *
  * What goes wrong:
  *   - The head falls silent: a member that has heard nothing of it for `patience` report intervals, and one more for each member before it, leads, and begins a new track. What was sent to

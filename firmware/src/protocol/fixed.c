@@ -299,11 +299,15 @@ static void sent(void *state, mh_tick now, enum mh_sent outcome)
 {
     struct mh_fixed *f = state;
     const mh_node_id to = f->link.to;
+    const bool is_report = f->link.count > 0 && f->link.queue[f->link.first].message.kind == MH_MESSAGE_REPORT;
     const enum mh_link_outcome found = mh_link_sent(&f->link, now, outcome);
     if (found == MH_LINK_TAKEN || found == MH_LINK_LOST) {
         mh_neighbours_acked(&f->neighbours, to, found == MH_LINK_TAKEN);
     }
     if (comes(f, now)) {
+        if (is_report && found == MH_LINK_TAKEN) {
+            mh_fixed_report_taken(f, to);
+        }
         done(f);
     }
 }

@@ -69,7 +69,9 @@ void mh_fixed_say(struct mh_fixed *f)
         .kind = MH_MESSAGE_LEAD,
         .as.lead = {.sender = (int32_t)f->node->id, .since_ms = (int32_t)f->since, .cluster = f->cluster}};
     mh_link_broadcast(&f->link, &message);
-    mh_fixed_set(f, MH_FIXED_SAY, f->time + f->config->report_interval);
+    /* not at the same time after each sample, when others send as well */
+    const mh_tick interval = f->config->report_interval;
+    mh_fixed_set(f, MH_FIXED_SAY, f->time + interval - mh_spread(f->node->id, f->time, interval / 4));
 }
 
 void mh_fixed_watch(struct mh_fixed *f)
@@ -104,6 +106,13 @@ void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said)
         }
     } else if (is_silent(f) || member == f->head || outranks(f, member, since)) {
         follow(f, member, since);
+    }
+}
+
+void mh_fixed_report_taken(struct mh_fixed *f, mh_node_id by)
+{
+    if (f->role == MH_FIXED_MEMBER && by == mh_fixed_head(f)->id) {
+        wait_for_head(f);
     }
 }
 

@@ -31,6 +31,9 @@ void mh_fixed_begin_member(struct mh_fixed *f);
 void mh_fixed_say(struct mh_fixed *f);
 void mh_fixed_watch(struct mh_fixed *f);
 void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said);
+
+/* A neighbour's radio has acknowledged a sample: if it is the head's, that is alive. */
+void mh_fixed_report_taken(struct mh_fixed *f, mh_node_id by);
 void mh_fixed_hear_report(struct mh_fixed *f, const mh_report_t *report);
 void mh_fixed_hear_taken(struct mh_fixed *f, const mh_taken_t *taken);
 void mh_fixed_hear_feedback(struct mh_fixed *f, mh_node_id from, const mh_hand_over_t *part);
