@@ -5,6 +5,7 @@
  * what is saved again is taken again. */
 #include "fuzz.h"
 #include "motehound/centroid.h"
+#include "motehound/gas.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
@@ -18,6 +19,8 @@ union state {
     struct mh_pftl pftl;
     struct mh_msl msl;
     struct mh_centroid_state centroid;
+    struct mh_gas gas;
+    struct mh_gas_gaussian gas_gaussian;
 };
 
 struct input {
@@ -41,9 +44,15 @@ static void check(const struct mh_estimate *estimate)
     require(mh_finite(estimate->velocity.x) && mh_finite(estimate->velocity.y));
     require(mh_finite(estimate->stored.x) && mh_finite(estimate->stored.y));
     require(mh_finite(estimate->stored_velocity.x) && mh_finite(estimate->stored_velocity.y));
+    require(mh_finite(estimate->rate));
     require(mh_finite(c.xx) && mh_finite(c.xy) && mh_finite(c.yy) && c.xx >= 0 && c.yy >= 0);
     require((double)c.xy * (double)c.xy <= (double)c.xx * (double)c.yy * (1 + 1e-5));
-    require(mh_coordinate_valid(estimate->origin.x_mm) && mh_coordinate_valid(estimate->origin.y_mm));
+    if (estimate->states == 3) {
+        const mh_real *more = estimate->covariance_more;
+        require(mh_finite(more[0]) && mh_finite(more[1]) && mh_finite(more[2]) && more[2] >= 0);
+        require((double)more[0] * (double)more[0] <= (double)c.xx * (double)more[2] * (1 + 1e-5));
+        require((double)more[1] * (double)more[1] <= (double)c.yy * (double)more[2] * (1 + 1e-5));
+    }
 }
 
 static mh_tick time_of(const uint8_t *track)
@@ -53,23 +62,26 @@ static mh_tick time_of(const uint8_t *track)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const struct mh_tracker *const trackers[] = {&mh_tracker_range, &mh_tracker_range, &mh_tracker_pftl,
-                                                        &mh_tracker_msl, &mh_tracker_centroid};
+    static const struct mh_tracker *const trackers[] = {
+        &mh_tracker_range, &mh_tracker_range,     &mh_tracker_pftl,    &mh_tracker_msl,    &mh_tracker_centroid,
+        &mh_tracker_gas,   &mh_tracker_gas_small, &mh_tracker_gas_ekf, &mh_tracker_gas_ukf};
     static union state state, other;
     struct mh_range_config range;
     struct mh_pftl_config pftl;
     struct mh_msl_config msl;
     struct mh_centroid_config centroid;
+    struct mh_gas_config gas;
     mh_range_config_default(&range);
     mh_pftl_config_default(&pftl);
     mh_msl_config_default(&msl);
     mh_centroid_config_default(&centroid);
+    mh_gas_config_default(&gas);
     range.sensing_range_m = 50;
     range.tolerance_m = 5;
-    const void *const configs[] = {&range, &range, &pftl, &msl, &centroid};
+    const void *const configs[] = {&range, &range, &pftl, &msl, &centroid, &gas, &gas, &gas, &gas};
     struct input input = {data, size};
     const uint8_t choice = byte(&input);
-    const uint8_t which = choice % 5;
+    const uint8_t which = choice % (sizeof trackers / sizeof trackers[0]);
     const struct mh_tracker *const tracker = trackers[which];
     if (which == 1) {
         range.bias_sd_m = 1;
