@@ -63,7 +63,7 @@ static void step(struct input *input, struct mh_cv *head, uint8_t count)
     struct mh_measurement set[SAMPLES_MAX];
     struct mh_estimate estimate;
     memset(set, 0, sizeof set);
-    for (uint8_t k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++) {
         const uint8_t where = byte(input), range = byte(input), late = byte(input);
         set[k].node = where % 16;
         set[k].place.x_mm = (where - 128) * 300;
@@ -117,11 +117,11 @@ static void fuse(struct input *input, uint8_t how)
         return;
     }
     require(length <= sizeof bytes);
-    for (uint8_t h = 0; h < HEADS; h++) {
+    for (int h = 0; h < HEADS; h++) {
         if (how & 4) {
             bytes[byte(input) % length] ^= byte(input);
         }
-        if (mh_summary_holds(bytes, length, h) && !(how & 8)) {
+        if (mh_summary_holds(bytes, length, (uint8_t)h) && !(how & 8)) {
             tracker->summary_taken(&heads[h], time);
         }
         if (!(how & 1)) {
@@ -136,17 +136,15 @@ static void fuse(struct input *input, uint8_t how)
 static void read_gaussian(struct input *input)
 {
     uint8_t bytes[BYTES_MAX], again[BYTES_MAX];
-    struct mh_gaussian gaussian, untouched;
+    struct mh_gaussian gaussian = {.n = UINT8_MAX};
     const uint8_t n = byte(input) % (MH_STATES_MAX + 3);
-    memset(&untouched, 0x5a, sizeof untouched);
-    gaussian = untouched;
     bytes_of(input, bytes, n <= MH_STATES_MAX ? (size_t)MH_GAUSSIAN_BYTES(n) : 0);
     if (mh_gaussian_read(&gaussian, n, bytes) == MH_OK) {
         require(mh_gaussian_check(&gaussian) == MH_OK && gaussian.n == n);
         require(mh_gaussian_write(&gaussian, again) == (size_t)MH_GAUSSIAN_BYTES(n));
         require(memcmp(bytes, again, (size_t)MH_GAUSSIAN_BYTES(n)) == 0);
     } else {
-        require(memcmp(&gaussian, &untouched, sizeof gaussian) == 0);
+        require(gaussian.n == UINT8_MAX && gaussian.x[0] == 0 && gaussian.P[0] == 0);
     }
 }
 
@@ -160,7 +158,11 @@ static void read_raw(struct input *input, uint8_t how)
         require(mh_summary_write(&summary, again) == length && memcmp(bytes, again, length) == 0);
     }
     if (mh_centre_fusion.take(&centre, how % HEADS, now, bytes, length) == MH_ERR_CORRUPT) {
-        require(memcmp(&before, &centre.slots[how % HEADS], sizeof before) == 0);
+        const struct mh_fusion_slot *after = &centre.slots[how % HEADS];
+        require(after->time == before.time && after->held == before.held && after->fresh == before.fresh);
+        for (int i = 0; i < MH_PACKED_SIZE(MH_SUMMARY_STATES); i++) {
+            require(before.P[i] == after->P[i]);
+        }
     }
     if (how & 128) {
         tracker->correct(&heads[how % HEADS], now, bytes, length);

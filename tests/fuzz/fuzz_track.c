@@ -47,6 +47,7 @@ static void check(const struct mh_estimate *estimate)
     require(mh_finite(estimate->rate));
     require(mh_finite(c.xx) && mh_finite(c.xy) && mh_finite(c.yy) && c.xx >= 0 && c.yy >= 0);
     require((double)c.xy * (double)c.xy <= (double)c.xx * (double)c.yy * (1 + 1e-5));
+    require(mh_coordinate_valid(estimate->origin.x_mm) && mh_coordinate_valid(estimate->origin.y_mm));
     if (estimate->states == 3) {
         const mh_real *more = estimate->covariance_more;
         require(mh_finite(more[0]) && mh_finite(more[1]) && mh_finite(more[2]) && more[2] >= 0);

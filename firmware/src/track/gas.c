@@ -180,6 +180,7 @@ static enum mh_status solve(const struct mh_gas *gas, struct mh_gaussian *estima
     }
     if (status == MH_OK) {
         widen(config, &search, estimate);
+        status = mh_gas_sane(estimate, true) ? MH_OK : MH_ERR_NOT_FINITE;
     }
     return status;
 }

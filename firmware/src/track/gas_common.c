@@ -101,9 +101,17 @@ void mh_gas_prior_of_log(const struct mh_gas_config *config, struct mh_gaussian 
 
 bool mh_gas_sane(const struct mh_gaussian *estimate, bool log)
 {
-    return mh_within(estimate->x[0], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M) &&
-           mh_within(estimate->x[1], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M) &&
-           (log ? mh_within(estimate->x[RATE], -LOG_RATE_MAX, LOG_RATE_MAX) : mh_finite(estimate->x[RATE]));
+    const mh_real rate = estimate->x[RATE];
+    if (!mh_within(estimate->x[0], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M) ||
+        !mh_within(estimate->x[1], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M)) {
+        return false;
+    }
+    if (!log) {
+        return mh_finite(rate);
+    }
+    /* the variance of the rate is one of mh_real too */
+    return mh_within(rate, -LOG_RATE_MAX, LOG_RATE_MAX) &&
+           mh_within(mh_squared(mh_exp(rate)) * estimate->P[MH_PACKED(RATE, RATE)], 1.2e-38f, 3.4e38f);
 }
 
 struct mh_estimate mh_gas_answer(const struct mh_gas_config *config, const struct mh_gaussian *estimate, bool log,
