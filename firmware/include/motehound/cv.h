@@ -12,7 +12,10 @@
  *
  * There is a track from the first step on (STARTED), and it does not end: without samples it is predicted. predict() and summarise() answer for any time at or after the last
  * step. An estimate states the covariance of all four states; `raw` and `stored` equal position; `measurements` is how many of the step's samples were
- * taken, late ones included; COASTED if none. interest(), save(), load(), restart() and score() do not exist.
+ * taken, late ones included; COASTED if none. interest(), restart() and score() do not exist.
+ *
+ * save() keeps the track, not the samples to be reordered: MH_CV_SAVED bytes. After load() nothing from before is taken any more; it all counts as shared (SPLIT), and as known to the
+ * centre (INCREMENT).
  *
  * Summaries (summary.h), by config.summary:
  * - PLAIN: the track predicted to the time.
@@ -35,6 +38,7 @@
 #include "motehound/white_acceleration.h"
 
 #define MH_CV_STATES MH_SUMMARY_STATES
+#define MH_CV_SAVED 60 /* bytes of a saved track: time, mean, covariance */
 
 /* Samples that are kept to be reordered, 32 bytes each. */
 #ifndef MH_CV_SAMPLES_MAX

@@ -39,6 +39,7 @@
 #define MH_HAND_OVER_BYTES 64 /* of a track in a hand_over_t */
 #define MH_VICINITY_NODES 6   /* that a vicinity_t tells of */
 #define MH_CLUSTER_NONE 255   /* not the number of a fixed cluster */
+#define MH_LEAD_BYTES 64      /* of a track in a lead_t */
 
 enum mh_message_kind {
     MH_MESSAGE_BEACON,
@@ -118,7 +119,7 @@ typedef const struct mh_wire_type *const mh_wire_types;
 extern mh_wire_types mh_wire_all[];
 
 /* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes, which are written whatever is returned. Errors: MH_ERR_ARGUMENT
- * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t, hand_over_t and vicinity_t do not go in a face_t). */
+ * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t, hand_over_t, vicinity_t and lead_t do not go in a face_t). */
 enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *message, uint8_t *frame, size_t *length);
 
 /* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields

@@ -2,6 +2,8 @@
 
 #include "motehound/spread.h"
 
+#include <string.h>
+
 #define LONGEST                                                                                                        \
     ((int32_t)1 << 30) /* ticks: nobody leads for longer, as far as others are told, so that times can be compared */
 
@@ -24,20 +26,25 @@ static bool is_silent(const struct mh_fixed *f)
     return !f->heard || !mh_tick_before(f->time + left, f->due[MH_FIXED_WATCH]);
 }
 
-static void follow(struct mh_fixed *f, uint8_t head, mh_tick since)
+static void follow(struct mh_fixed *f, uint8_t head, const mh_lead_t *said)
 {
     f->role = MH_FIXED_MEMBER;
     f->head = head;
-    f->since = since;
+    f->since = (mh_tick)said->since_ms;
     f->heard = true;
+    f->track_length = said->length;
+    memcpy(f->track, said->data, MH_LEAD_BYTES);
     mh_fixed_clear(f, MH_FIXED_SAY);
     wait_for_head(f);
 }
 
-/* Returns false if this member cannot, now. */
+/* With the track that was heard, if the tracker takes it. Returns false if this member cannot, now. */
 static bool lead(struct mh_fixed *f)
 {
-    if (f->node->port->lead(f->node->context, f->now, NULL, 0) != MH_OK) {
+    const struct mh_protocol_port *port = f->node->port;
+    const bool goes_on =
+        f->track_length > 0 && port->lead(f->node->context, f->now, f->track, f->track_length) == MH_OK;
+    if (!goes_on && port->lead(f->node->context, f->now, NULL, 0) != MH_OK) {
         return false;
     }
     f->role = MH_FIXED_HEAD;
@@ -55,6 +62,7 @@ void mh_fixed_begin_member(struct mh_fixed *f)
     f->role = MH_FIXED_MEMBER;
     f->head = 0;
     f->heard = false;
+    f->track_length = 0;
     if (f->rank > 0 || !lead(f)) {
         wait_for_head(f);
     }
@@ -65,9 +73,15 @@ void mh_fixed_say(struct mh_fixed *f)
     if (mh_ticks_between(f->since, f->time) > LONGEST) {
         f->since = f->time - (mh_tick)LONGEST;
     }
-    const struct mh_message message = {
+    struct mh_message message = {
         .kind = MH_MESSAGE_LEAD,
         .as.lead = {.sender = (int32_t)f->node->id, .since_ms = (int32_t)f->since, .cluster = f->cluster}};
+    uint8_t track[MH_TRACK_BYTES_MAX];
+    size_t length;
+    if (f->node->port->save(f->node->context, track, &length) == MH_OK && length <= MH_LEAD_BYTES) {
+        message.as.lead.length = (uint8_t)length;
+        memcpy(message.as.lead.data, track, length);
+    }
     mh_link_broadcast(&f->link, &message);
     /* not at the same time after each sample, when others send as well */
     const mh_tick interval = f->config->report_interval;
@@ -102,10 +116,10 @@ void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said)
         if (outranks(f, member, since)) {
             f->counters.yielded++;
             f->node->port->follow(f->node->context);
-            follow(f, member, since);
+            follow(f, member, said);
         }
     } else if (is_silent(f) || member == f->head || outranks(f, member, since)) {
-        follow(f, member, since);
+        follow(f, member, said);
     }
 }
 
@@ -158,7 +172,9 @@ void mh_fixed_closed(struct mh_fixed *f, mh_tick instant)
 {
     uint8_t bytes[MH_SUMMARY_BYTES_MAX];
     size_t length;
-    if (f->role == MH_FIXED_HEAD && mh_tick_aligned(0, f->config->report_interval, instant) == instant &&
+    const mh_tick interval = f->config->report_interval;
+    if (f->role == MH_FIXED_HEAD && mh_tick_aligned(0, interval, instant) == instant &&
+        !mh_tick_before(instant, f->since + interval) &&
         f->config->port->summarise(f->node->context, instant, bytes, &length) == MH_OK) {
         f->counters.summaries++;
         mh_fixed_send_bytes(f, f->cluster, instant, bytes, length, f->config->sink, &f->config->sink_place);

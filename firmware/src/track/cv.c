@@ -2,6 +2,7 @@
 
 #include "plane_estimate.h"
 
+#include "motehound/bytes.h"
 #include "motehound/ekf.h"
 #include "motehound/range_model.h"
 #include "motehound/ukf.h"
@@ -263,6 +264,14 @@ static bool noise_sound(const struct mh_cv_config *config)
     return sound;
 }
 
+static void begin_with(struct mh_cv *cv, mh_tick time, const struct mh_gaussian *state)
+{
+    cv->settled.time = cv->reference_time = cv->since = cv->horizon = time;
+    cv->settled.state = cv->reference = *state;
+    memcpy(cv->settled.shared, state->P, sizeof cv->settled.shared);
+    cv->latest = cv->settled;
+}
+
 static enum mh_status init(void *state, const void *config, mh_tick interval)
 {
     struct mh_cv *cv = state;
@@ -284,11 +293,8 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     memset(cv, 0, sizeof *cv);
     cv->config = *chosen;
     cv->interval = interval;
-    cv->settled.time = cv->reference_time = cv->since = chosen->start;
-    cv->horizon = chosen->start - 1;
-    cv->settled.state = cv->reference = start;
-    memcpy(cv->settled.shared, chosen->covariance, sizeof chosen->covariance);
-    cv->latest = cv->settled;
+    begin_with(cv, chosen->start, &start);
+    cv->horizon = chosen->start - 1; /* a sample of the start itself counts */
     return MH_OK;
 }
 
@@ -347,11 +353,11 @@ static enum mh_status step(update_function update, struct mh_cv *cv, mh_tick tim
     if (cv->stepped && !mh_tick_before(cv->time, time)) {
         return MH_ERR_TIME;
     }
-    if (mh_tick_before(time, cv->config.start)) {
+    const bool starts = !cv->stepped;
+    if (starts && mh_tick_before(time, cv->latest.time)) {
         return MH_NONE;
     }
-    const bool starts = !cv->stepped;
-    if (starts && mh_tick_before(cv->config.start, time - cv->interval)) {
+    if (starts && mh_tick_before(cv->since, time - cv->interval)) {
         cv->since = time - cv->interval;
     }
     uint16_t taken = 0;
@@ -381,6 +387,40 @@ static enum mh_status step_ekf(void *state, mh_tick time, const struct mh_measur
                                struct mh_estimate *estimate)
 {
     return step(ekf_update, state, time, measurements, count, estimate);
+}
+
+static enum mh_status save(const void *state, uint8_t *bytes, size_t *length)
+{
+    const struct mh_cv *cv = state;
+    uint8_t *at = bytes;
+    if (cv == NULL || bytes == NULL || length == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!cv->stepped) {
+        return MH_NONE;
+    }
+    mh_put_u32(&at, cv->latest.time);
+    *length = sizeof(uint32_t) + mh_gaussian_write(&cv->latest.state, at);
+    return MH_OK;
+}
+
+static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
+{
+    struct mh_cv *cv = state;
+    struct mh_gaussian saved;
+    const uint8_t *at = bytes;
+    if (cv == NULL || bytes == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (length != MH_CV_SAVED) {
+        return MH_ERR_CORRUPT;
+    }
+    const mh_tick time = mh_get_u32(&at);
+    if (mh_tick_before(time, cv->config.start) || mh_gaussian_read(&saved, MH_CV_STATES, at) != MH_OK) {
+        return MH_ERR_CORRUPT;
+    }
+    begin_with(cv, time, &saved);
+    return MH_OK;
 }
 
 /* ---- summaries ---- */
@@ -558,6 +598,8 @@ const struct mh_tracker mh_tracker_cv_ukf = {
     .init = init_ukf,
     .step = step_ukf,
     .predict = predict,
+    .save = save,
+    .load = load,
     .summarise = summarise,
     .summary_taken = summary_taken,
     .correct = correct_ukf,
@@ -570,6 +612,8 @@ const struct mh_tracker mh_tracker_cv_ekf = {
     .init = init,
     .step = step_ekf,
     .predict = predict,
+    .save = save,
+    .load = load,
     .summarise = summarise,
     .summary_taken = summary_taken,
     .correct = correct_ekf,

@@ -55,13 +55,19 @@ static bool form_sound(const mh_form_t *form)
 
 static bool join_sound(const mh_join_t *join) { return join->sender != -1 && join->track != -1; }
 
-static bool hand_over_sound(const mh_hand_over_t *part)
+/* The rest of data[0 .. room) is 0. */
+static bool data_sound(const uint8_t *data, uint8_t length, uint8_t room)
 {
-    bool sound = part->track != -1 && part->part < part->parts && part->length <= MH_HAND_OVER_BYTES;
-    for (uint8_t i = part->length; sound && i < MH_HAND_OVER_BYTES; i++) {
-        sound = part->data[i] == 0;
+    bool sound = length <= room;
+    for (uint8_t i = length; sound && i < room; i++) {
+        sound = data[i] == 0;
     }
     return sound;
+}
+
+static bool hand_over_sound(const mh_hand_over_t *part)
+{
+    return part->track != -1 && part->part < part->parts && data_sound(part->data, part->length, MH_HAND_OVER_BYTES);
 }
 
 static bool alert_sound(const mh_alert_t *alert)
@@ -106,7 +112,11 @@ static bool leak_sound(const mh_leak_t *leak)
            finite_reals(leak->rate, 1) && finite_reals(leak->spread, 6) && leak->state <= MH_SEARCH_EXHAUSTED;
 }
 
-static bool lead_sound(const mh_lead_t *lead) { return lead->sender != -1 && lead->cluster != MH_CLUSTER_NONE; }
+static bool lead_sound(const mh_lead_t *lead)
+{
+    return lead->sender != -1 && lead->cluster != MH_CLUSTER_NONE &&
+           data_sound(lead->data, lead->length, MH_LEAD_BYTES);
+}
 
 static bool taken_sound(const mh_taken_t *taken) { return taken->cluster != MH_CLUSTER_NONE; }
 

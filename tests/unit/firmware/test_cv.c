@@ -270,6 +270,41 @@ static void without_room_the_oldest_are_settled(void)
     TEST_ASSERT_EQUAL_UINT32(1, state.counters.late);
 }
 
+static void a_saved_track_goes_on_elsewhere(void)
+{
+    uint8_t saved[MH_CV_SAVED], there[57], here[57];
+    size_t length = 0;
+    config.lag = 0;
+    begin(&mh_tracker_cv_ukf, &state);
+    TEST_ASSERT_EQUAL(MH_NONE, mh_tracker_cv_ukf.save(&state, saved, &length));
+    for (int k = 1; k <= STEPS; k++) {
+        struct mh_measurement m;
+        (void)measures(0, (uint8_t)(k % NODES), k, &m);
+        if (k == STEPS / 2) {
+            TEST_ASSERT_EQUAL(MH_OK, mh_tracker_cv_ukf.save(&state, saved, &length));
+            TEST_ASSERT_EQUAL(MH_CV_SAVED, length);
+        }
+        TEST_ASSERT_EQUAL(MH_OK, mh_tracker_cv_ukf.step(&state, (mh_tick)k * TICK, &m, 1, &estimate));
+    }
+    note(&mh_tracker_cv_ukf, here);
+    begin(&mh_tracker_cv_ukf, &state);
+    TEST_ASSERT_EQUAL(MH_OK, mh_tracker_cv_ukf.load(&state, saved, length));
+    TEST_ASSERT_EQUAL(MH_NONE, mh_tracker_cv_ukf.step(&state, TICK, NULL, 0, &estimate)); /* before it */
+    for (int k = STEPS / 2; k <= STEPS; k++) {
+        struct mh_measurement m;
+        (void)measures(0, (uint8_t)(k % NODES), k, &m);
+        TEST_ASSERT_EQUAL(MH_OK, mh_tracker_cv_ukf.step(&state, (mh_tick)k * TICK, &m, 1, &estimate));
+    }
+    note(&mh_tracker_cv_ukf, there);
+    TEST_ASSERT_EQUAL_MEMORY(here, there, 57);
+    begin(&mh_tracker_cv_ukf, &state);
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_tracker_cv_ukf.load(&state, saved, MH_CV_SAVED - 1));
+    memset(saved + 20, 0, 4); /* a variance of 0 */
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_tracker_cv_ukf.load(&state, saved, MH_CV_SAVED));
+    memset(saved, 0xFF, 4); /* before the start */
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_tracker_cv_ukf.load(&state, saved, MH_CV_SAVED));
+}
+
 /* ---- prediction ---- */
 
 static void without_samples_the_start_is_predicted(void)
@@ -392,6 +427,7 @@ int main(void)
     RUN_TEST(a_track_across_the_wrap_of_time_is_the_same);
     RUN_TEST(what_is_late_early_or_repeated_is_refused_and_counted);
     RUN_TEST(without_room_the_oldest_are_settled);
+    RUN_TEST(a_saved_track_goes_on_elsewhere);
     RUN_TEST(without_samples_the_start_is_predicted);
     RUN_TEST(there_is_no_track_before_the_start);
     RUN_TEST(nodes_may_have_a_noise_of_their_own);

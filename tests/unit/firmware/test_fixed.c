@@ -21,6 +21,9 @@ static struct {
     mh_tick network_ahead; /* network time - own time */
     bool unknown;          /* the network's time */
     enum mh_status lead_status;
+    size_t track_length; /* that it led with */
+    bool refuses_track;
+    size_t saved_length;
 } saw;
 
 /* What was asked of tracker and centre, and what they answer. */
@@ -77,9 +80,20 @@ static enum mh_status lead(void *context, mh_tick now, const uint8_t *track, siz
 {
     (void)context;
     (void)now;
-    (void)track;
-    saw.led += length == 0;
+    if (length > 0 && (saw.refuses_track || track[0] != 9)) {
+        return MH_ERR_CORRUPT;
+    }
+    saw.led++;
+    saw.track_length = length;
     return saw.lead_status;
+}
+
+static enum mh_status save(void *context, uint8_t *track, size_t *length)
+{
+    (void)context;
+    memset(track, 9, saw.saved_length);
+    *length = saw.saved_length;
+    return saw.saved_length > 0 ? MH_OK : MH_NONE;
 }
 
 static void follow(void *context)
@@ -102,6 +116,7 @@ static const struct mh_protocol_port port = {.send = send,
                                              .own = own,
                                              .lead = lead,
                                              .follow = follow,
+                                             .save = save,
                                              .tell = tell};
 
 static enum mh_status summarise(void *context, mh_tick time, uint8_t *bytes, size_t *length)
@@ -330,6 +345,28 @@ static void a_head_that_acknowledges_samples_is_alive(void)
     TEST_ASSERT_EQUAL_UINT32(18500 + 3 * T, state.due[MH_FIXED_WATCH]);
 }
 
+static void who_takes_over_goes_on_with_the_track(void)
+{
+    come_up(11, 30000, 0);
+    saw.saved_length = MH_LEAD_BYTES;
+    run(10 * T);
+    TEST_ASSERT_EQUAL(MH_MESSAGE_LEAD, saw.message.kind);
+    TEST_ASSERT_EQUAL(MH_LEAD_BYTES, saw.message.as.lead.length);
+    TEST_ASSERT_EQUAL(9, saw.message.as.lead.data[MH_LEAD_BYTES - 1]);
+    const struct mh_message said = saw.message;
+    saw.saved_length = MH_LEAD_BYTES + 1; /* too long to be said */
+    run(12 * T);
+    TEST_ASSERT_EQUAL(0, saw.message.as.lead.length);
+    for (int refuses = 0; refuses < 2; refuses++) {
+        come_up(12, 32000, 0);
+        fixed->message(&state, 500, &said);
+        saw.refuses_track = refuses == 1;
+        run(500 + 3 * T);
+        TEST_ASSERT_EQUAL(1, saw.led);
+        TEST_ASSERT_EQUAL(refuses ? 0 : MH_LEAD_BYTES, saw.track_length);
+    }
+}
+
 static void of_two_heads_the_one_that_has_led_longer_goes_on(void)
 {
     come_up(12, 32000, 0);
@@ -485,6 +522,11 @@ static void a_head_summarises_at_its_report_interval(void)
     come_up(12, 32000, 0);
     close_instant(1100, 1000);
     TEST_ASSERT_EQUAL(0, asked.summarised);
+    run(3 * T); /* leads: not for long, perhaps */
+    close_instant(3100, 3000);
+    TEST_ASSERT_EQUAL(0, asked.summarised);
+    close_instant(4100, 4000);
+    TEST_ASSERT_EQUAL(1, asked.summarised);
 }
 
 static void a_head_hears_the_centre_only(void)
@@ -656,6 +698,7 @@ int main(void)
     RUN_TEST(the_others_wait_one_after_the_other);
     RUN_TEST(a_member_that_hears_its_head_does_not_lead);
     RUN_TEST(a_head_that_acknowledges_samples_is_alive);
+    RUN_TEST(who_takes_over_goes_on_with_the_track);
     RUN_TEST(of_two_heads_the_one_that_has_led_longer_goes_on);
     RUN_TEST(who_cannot_lead_tries_again);
     RUN_TEST(when_the_time_jumps_all_begin_anew);

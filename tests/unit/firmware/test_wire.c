@@ -147,7 +147,8 @@ static struct mh_message example(enum mh_message_kind kind)
         break;
     }
     case MH_MESSAGE_LEAD: {
-        const mh_lead_t lead = {.sender = 1, .since_ms = -2, .cluster = 250};
+        const mh_lead_t lead = {
+            .sender = 1, .since_ms = -2, .cluster = 250, .length = 63, .data = {[0] = 1, [62] = 255}};
         message.as.lead = lead;
         break;
     }
@@ -194,11 +195,11 @@ static struct mh_message enveloped(enum mh_message_kind kind, enum mh_envelope_k
     return message;
 }
 
-/* A form_t, a hand_over_t or a vicinity_t and a face_t are longer than a frame together. */
+/* A form_t, a hand_over_t, a vicinity_t or a lead_t and a face_t are longer than a frame together. */
 static bool fits(enum mh_message_kind kind, int envelope)
 {
-    return envelope != MH_ENVELOPE_FACE ||
-           (kind != MH_MESSAGE_FORM && kind != MH_MESSAGE_HAND_OVER && kind != MH_MESSAGE_VICINITY);
+    return envelope != MH_ENVELOPE_FACE || (kind != MH_MESSAGE_FORM && kind != MH_MESSAGE_HAND_OVER &&
+                                            kind != MH_MESSAGE_VICINITY && kind != MH_MESSAGE_LEAD);
 }
 
 /* The last of the envelopes, up to `most`, that the kind fits in. */
@@ -491,6 +492,12 @@ static void fields_of_fixed_clusters_that_nobody_writes_are_corrupt(void)
     expect_corrupt(&bad);
     bad = example(MH_MESSAGE_LEAD);
     bad.as.lead.cluster = MH_CLUSTER_NONE;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_LEAD);
+    bad.as.lead.length = MH_LEAD_BYTES + 1;
+    expect_corrupt(&bad);
+    bad = example(MH_MESSAGE_LEAD);
+    bad.as.lead.length = 62; /* one more behind the end */
     expect_corrupt(&bad);
     bad = example(MH_MESSAGE_TAKEN);
     bad.as.taken.cluster = MH_CLUSTER_NONE;
