@@ -30,6 +30,7 @@
 #include "motehound/gaussian.h"
 #include "motehound/plume.h"
 #include "motehound/tracker.h"
+#include "motehound/ukf.h"
 
 #define MH_GAS_STATES 3
 #define MH_GAS_SAVED MH_GAUSSIAN_BYTES(MH_GAS_STATES)
@@ -50,6 +51,8 @@ struct mh_gas_config {
     mh_real prior_rate, prior_rate_sd; /* ... and how much it releases, each 1e-9 to 1e9 */
     mh_real calm_step_m; /* MH_ESTIMATE_CALM: the estimate moved less than this, 1e-3 to 1e5, nominal 5, ... */
     mh_real calm_sd_m;   /* ... and is as sure as this, the same range, nominal 10 */
+    struct mh_ukf_weights
+        ukf; /* of gas_ukf, as ukf.h has them: nominal {1, 0, 0}, as published; {0.5, 2, 0} is better */
 };
 
 /* State of `gas_ekf`, `gas_ukf` and `gas_small`. */

@@ -17,6 +17,7 @@ void mh_gas_config_default(struct mh_gas_config *config)
         .prior_rate_sd = 30.0f,
         .calm_step_m = 5.0f,
         .calm_sd_m = 10.0f,
+        .ukf = {.alpha = 1.0f, .beta = 0.0f, .kappa = 0.0f},
     };
     *config = nominal;
 }

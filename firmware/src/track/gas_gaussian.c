@@ -195,8 +195,8 @@ static enum mh_status take_by_ekf(struct mh_gaussian *estimate, const struct mh_
 
 static enum mh_status take_by_ukf(struct mh_gaussian *estimate, const struct mh_observations *sample)
 {
-    static const struct mh_ukf_weights weights = {.alpha = 1.0f, .beta = 0.0f, .kappa = 0.0f};
-    return mh_ukf_update(estimate, &weights, sample);
+    const struct mh_gas_samples *context = sample->context;
+    return mh_ukf_update(estimate, &context->config->ukf, sample);
 }
 
 static uint16_t take_ekf(struct mh_gaussian *estimate, const struct mh_observations *samples)
@@ -224,6 +224,16 @@ static enum mh_status init_ekf(void *state, const void *config, mh_tick interval
 static enum mh_status init_ukf(void *state, const void *config, mh_tick interval)
 {
     static const struct mh_gas_kind kind = {.log = false, .prior = mh_gas_prior, .take = take_ukf};
+    static const struct mh_observations none = {.count = 0};
+    const struct mh_gas_config *given = config;
+    struct mh_gaussian prior;
+    if (given == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    mh_gas_prior(given, &prior);
+    if (mh_ukf_update(&prior, &given->ukf, &none) != MH_OK) {
+        return MH_ERR_ARGUMENT; /* the weights */
+    }
     return init(&kind, state, config, interval);
 }
 

@@ -542,6 +542,10 @@ static void wrong_settings_are_refused(void)
     }
     const struct mh_gas_config config = nominal();
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_gas.init(&state, &config, 0));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_gas_ukf.init(&state, NULL, 1));
+    struct mh_gas_config narrow = config;
+    narrow.ukf.alpha = 0.05f;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_gas_ukf.init(&state, &narrow, 1));
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_gas_ekf.init(NULL, &config, 1));
 }
 
