@@ -12,10 +12,11 @@
  * What an estimate holds: `origin` is the place of the prior; `states` 3, (x, y, q), after a step and 0 where `gas` was loaded and has not been stepped; `raw`
  * and `stored` equal position; `rate` in the unit of the prior's. `flags`: STARTED at the first step from the prior, COASTED without samples, REFRESHED with some,
  * CALM where the estimate has moved by less than calm_step_m since the step, or the head, before, and for `gas` and `gas_small` also
- * sqrt(Pxx + Pyy) < calm_sd_m. A track that has gone astray, more than 100 km from the prior, is dropped: MH_NONE, and the next step begins from the prior.
+ * sqrt(Pxx + Pyy) < calm_sd_m. A track that has gone astray, more than 100 km from the prior or of an absurd rate, is dropped: MH_NONE, and the next step begins from the prior.
  *
  * `score`: gas_ekf and gas_ukf want the head nearest to the estimate. The others want the one whose neighbourhood, itself included, tells most,
- * ln det(P^-1 + sum h h' / sigma^2), with h where the estimate is but no nearer than it is sure of; `gas` takes off MH_GAS_REVISIT each time that the
+ * ln det(P^-1 + sum h h' / sigma^2), with h where the estimate is but no nearer than it is sure of, to a sixteenth, so that rounding decides nothing;
+ * `gas` takes off MH_GAS_REVISIT each time that the
  * candidate was head before.
  *
  * A saved track, all of it relative to the place of the prior, which all heads know alike (numbers as bytes.h puts them):
@@ -48,7 +49,7 @@ struct mh_gas_config {
         area; /* where the source can be: the grid's; not empty. Places within 1000 km of the field's origin */
     struct mh_place prior;             /* where it is expected, ... */
     struct mh_vec2 prior_sd_m;         /* 0.1 to 1e5 */
-    mh_real prior_rate, prior_rate_sd; /* ... and how much it releases, each 1e-9 to 1e9 */
+    mh_real prior_rate, prior_rate_sd; /* ... and how much it releases, 1e-9 to 1e9 and 0.01 to 100 times that */
     mh_real calm_step_m; /* MH_ESTIMATE_CALM: the estimate moved less than this, 1e-3 to 1e5, nominal 5, ... */
     mh_real calm_sd_m;   /* ... and is as sure as this, the same range, nominal 10 */
     struct mh_ukf_weights

@@ -2,7 +2,12 @@
 
 #define GRAINS 16.0f /* of information */
 #define RATE 2       /* the state q, or ln q */
-#define LOG_RATE_MAX 60.0f
+
+/* Beyond these an estimate has gone astray: products of them stay within float */
+#define RATE_MAX 1e13f
+#define LOG_RATE_MAX 30.0f
+#define VARIANCE_MAX 1e13f /* of places, m2 */
+#define LOG_VARIANCE_MAX 100.0f
 
 void mh_gas_config_default(struct mh_gas_config *config)
 {
@@ -37,7 +42,8 @@ enum mh_status mh_gas_valid(const struct mh_gas_config *config, mh_tick interval
     const bool sensors = mh_within(config->noise, 1e-9f, 1e9f) && mh_within(config->unit, 1e-12f, 1e12f);
     const bool prior = mh_coordinate_valid(config->prior.x_mm) && mh_coordinate_valid(config->prior.y_mm) &&
                        mh_within(config->prior_sd_m.x, 0.1f, 1e5f) && mh_within(config->prior_sd_m.y, 0.1f, 1e5f) &&
-                       mh_within(config->prior_rate, 1e-9f, 1e9f) && mh_within(config->prior_rate_sd, 1e-9f, 1e9f);
+                       mh_within(config->prior_rate, 1e-9f, 1e9f) &&
+                       mh_within(config->prior_rate_sd / config->prior_rate, 0.01f, 100.0f);
     const bool calm = mh_within(config->calm_step_m, 1e-3f, 1e5f) && mh_within(config->calm_sd_m, 1e-3f, 1e5f);
     return interval >= 1 && interval <= 3600000u && air && sensors && prior && calm && region_valid(&config->area)
                ? MH_OK
@@ -102,17 +108,13 @@ void mh_gas_prior_of_log(const struct mh_gas_config *config, struct mh_gaussian 
 
 bool mh_gas_sane(const struct mh_gaussian *estimate, bool log)
 {
-    const mh_real rate = estimate->x[RATE];
-    if (!mh_within(estimate->x[0], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M) ||
-        !mh_within(estimate->x[1], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M)) {
-        return false;
-    }
-    if (!log) {
-        return mh_finite(rate);
-    }
-    /* the variance of the rate is one of mh_real too */
-    return mh_within(rate, -LOG_RATE_MAX, LOG_RATE_MAX) &&
-           mh_within(mh_squared(mh_exp(rate)) * estimate->P[MH_PACKED(RATE, RATE)], 1.2e-38f, 3.4e38f);
+    const mh_real *P = estimate->P;
+    const mh_real rate = log ? LOG_RATE_MAX : RATE_MAX;
+    return mh_within(estimate->x[0], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M) &&
+           mh_within(estimate->x[1], -MH_GAS_FARTHEST_M, MH_GAS_FARTHEST_M) &&
+           mh_within(estimate->x[RATE], -rate, rate) && P[MH_PACKED(0, 0)] <= VARIANCE_MAX &&
+           P[MH_PACKED(1, 1)] <= VARIANCE_MAX &&
+           P[MH_PACKED(RATE, RATE)] <= (log ? LOG_VARIANCE_MAX : RATE_MAX * RATE_MAX);
 }
 
 struct mh_estimate mh_gas_answer(const struct mh_gas_config *config, const struct mh_gaussian *estimate, bool log,

@@ -32,7 +32,7 @@ enum mh_status mh_gas_sample_of_log_rate(const void *samples, uint16_t k, const 
 void mh_gas_prior(const struct mh_gas_config *config, struct mh_gaussian *prior);
 void mh_gas_prior_of_log(const struct mh_gas_config *config, struct mh_gaussian *prior);
 
-/* Finite and not astray. */
+/* Finite, not astray, and not of an absurd uncertainty. */
 bool mh_gas_sane(const struct mh_gaussian *estimate, bool log);
 
 /* The estimate of (x, y, q), or of (x, y, ln q) where `log`, with its covariance if it is `stated`. */

@@ -213,7 +213,8 @@ static void set_real(size_t at, mh_real value)
 
 static void refuse(const struct mh_tracker *tracker, size_t length)
 {
-    const struct mh_gas_config config = nominal();
+    struct mh_gas_config config = nominal();
+    config.noise = 0.1f;
     begin(tracker, &config);
     TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, tracker->load(&state, track, length));
     TEST_ASSERT_EQUAL_INT(MH_NONE, tracker->predict(&state, 0, &estimate));
@@ -222,7 +223,8 @@ static void refuse(const struct mh_tracker *tracker, size_t length)
 
 static size_t saved(const struct mh_tracker *tracker, size_t sensors)
 {
-    const struct mh_gas_config config = nominal();
+    struct mh_gas_config config = nominal();
+    config.noise = 0.1f;
     size_t length = 0;
     put_square(&config);
     begin(tracker, &config);
@@ -284,7 +286,8 @@ static void what_are_no_data_is_refused(void)
 
 static void time_and_silence(void)
 {
-    const struct mh_gas_config config = nominal();
+    struct mh_gas_config config = nominal();
+    config.noise = 0.1f;
     put_square(&config);
     for (size_t t = FIRST; t < TRACKERS; t++) {
         const struct mh_tracker *const tracker = trackers[t];
