@@ -1,7 +1,8 @@
 /* A live mote under hostile frames, readings and clocks.
  *
  * The first byte chooses the mote: bits 0-1 the tracker, bit 2 a head or a plain sensor node, bit 4 the protocol. The second: above 127 the
- * protocol is `cluster`, bits 0-2 its election rule, bit 3 radios that sleep, bit 4 the sink, bits 5-6 the tracker if not 0. Then come events, each an opcode and its operands; see
+ * protocol is `cluster`, bits 0-2 its election rule, bit 3 radios that sleep, bit 4 the sink, bits 5-6 the tracker if not 0; 64 to 127: it is `token`,
+ * bits 0-1 the tracker, bit 2 who is to begin, bit 4 the sink. Then come events, each an opcode and its operands; see
  * next_event(). Whatever happens: what the mote transmits are frames that it would take itself,
  * and what it reports are finite numbers. */
 #include "fuzz.h"
@@ -9,6 +10,7 @@
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
 #include "motehound/diffusion.h"
+#include "motehound/gas.h"
 #include "motehound/geographic.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
@@ -16,6 +18,7 @@
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
+#include "motehound/token.h"
 
 #include <string.h>
 
@@ -28,6 +31,8 @@ union tracker_state {
     struct mh_pftl pftl;
     struct mh_msl msl;
     struct mh_centroid_state centroid;
+    struct mh_gas gas;
+    struct mh_gas_gaussian gas_gaussian;
 };
 
 struct world {
@@ -35,6 +40,8 @@ struct world {
     mh_tick now, alarm;
     int alarm_set;
     int geographic;
+    int searches;
+    mh_node_id sink;
 };
 
 struct input {
@@ -226,6 +233,74 @@ static void cluster_frame(struct world *world, struct input *input)
     mh_mote_frame(&world->mote, world->now, frame, length);
 }
 
+/* What nodes around this one, and the sink, say in a search, of about now. */
+static void search_frame(struct world *world, struct input *input)
+{
+    static const enum mh_message_kind kinds[] = {MH_MESSAGE_ASK,   MH_MESSAGE_ANSWER, MH_MESSAGE_HAND_OVER,
+                                                 MH_MESSAGE_TOKEN, MH_MESSAGE_LEAK,   MH_MESSAGE_VICINITY};
+    const uint8_t kind = byte(input), who = byte(input), generation = byte(input), where = byte(input);
+    const int32_t instant = (int32_t)(world->now / INTERVAL * INTERVAL), track = (int32_t)world->sink;
+    const int32_t sender = who % 16, x_mm = (where - 128) * 1000;
+    const struct mh_place place = {0, 0, 0};
+    struct mh_message message = {.kind = kinds[kind % 6]};
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    switch (message.kind) {
+    case MH_MESSAGE_ASK:
+        message.as.ask = (mh_ask_t){.sender = sender,
+                                    .track = track,
+                                    .generation = generation,
+                                    .time_ms = instant,
+                                    .x_mm = x_mm,
+                                    .everyone = 1};
+        break;
+    case MH_MESSAGE_ANSWER:
+        message.as.answer = (mh_answer_t){.sender = sender,
+                                          .time_ms = instant,
+                                          .x_mm = x_mm,
+                                          .y_mm = byte(input) * 1000,
+                                          .value_q20 = (mh_q20)byte(input) << 20};
+        break;
+    case MH_MESSAGE_HAND_OVER:
+        message.as.hand_over = (mh_hand_over_t){.track = track,
+                                                .generation = generation,
+                                                .time_ms = instant,
+                                                .part = where % 4,
+                                                .parts = (uint8_t)(where % 4 + 1 + where / 200)};
+        message.as.hand_over.length = (uint8_t)bytes(input, message.as.hand_over.data, byte(input) % 65);
+        break;
+    case MH_MESSAGE_TOKEN:
+        message.as.token = (mh_token_t){.sender = sender,
+                                        .track = track,
+                                        .generation = generation,
+                                        .holder = where < 128 ? -1 : where % 16,
+                                        .state = (uint8_t)(kind / 6 % 3)};
+        break;
+    case MH_MESSAGE_LEAK:
+        message.as.leak = (mh_leak_t){.track = track,
+                                      .generation = generation,
+                                      .time_ms = instant,
+                                      .x_mm = x_mm,
+                                      .heads = who,
+                                      .state = (uint8_t)(kind / 6 % 3)};
+        bytes(input, message.as.leak.rate, sizeof message.as.leak.rate);
+        bytes(input, message.as.leak.spread, sizeof message.as.leak.spread);
+        break;
+    default:
+        message.as.vicinity = (mh_vicinity_t){.sender = sender, .count = where % 7};
+        for (int i = 0; i < MH_VICINITY_NODES; i++) {
+            message.as.vicinity.id[i] = i < where % 7 ? 20 + i + who : -1;
+            message.as.vicinity.x_mm[i] = i < where % 7 ? x_mm + 7000 * i : 0;
+        }
+        break;
+    }
+    if (message.kind != MH_MESSAGE_ASK && message.kind != MH_MESSAGE_VICINITY) {
+        mh_geographic_address(&message, (mh_node_id)sender, (int16_t)byte(input), 7, &place);
+    }
+    require(mh_wire_encode(mh_wire_all, &message, frame, &length) == MH_OK);
+    mh_mote_frame(&world->mote, world->now, frame, length);
+}
+
 static void reading(struct world *world, struct input *input)
 {
     const int32_t high = byte(input), low = byte(input);
@@ -259,7 +334,11 @@ static void next_event(struct world *world, struct input *input)
         near_hello(world, input);
         break;
     case 7:
-        cluster_frame(world, input);
+        if (world->searches) {
+            search_frame(world, input);
+        } else {
+            cluster_frame(world, input);
+        }
         break;
     default:
         world->now += (mh_tick)byte(input) << byte(input) % 25;
@@ -274,13 +353,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                                          &mh_tracker_diffusion};
     static const struct mh_tracker *const trackers_of_clusters[4] = {&mh_tracker_range, &mh_tracker_pftl,
                                                                      &mh_tracker_msl, &mh_tracker_centroid};
+    static const struct mh_tracker *const trackers_of_searches[4] = {&mh_tracker_gas, &mh_tracker_gas_small,
+                                                                     &mh_tracker_gas_ukf, &mh_tracker_gas_ekf};
     static const struct mh_port port = {.transmit = transmit, .set_alarm = set_alarm, .report = report, .sense = sense};
     static const struct mh_sensor_config sensor = {
         .q20_per_count = 1 << 8, .counts_max = 65535, .interval = INTERVAL, .threshold = MH_Q20(0.2f)};
     struct input input = {data, size};
     const uint8_t choice = byte(&input), second = byte(&input);
-    const struct mh_tracker *tracker =
-        second >= 128 && (second & 96) ? trackers_of_clusters[second >> 5 & 3] : trackers[choice & 3];
+    const int clusters = second >= 128, searches = !clusters && second >= 64;
+    const struct mh_tracker *tracker = clusters && (second & 96) ? trackers_of_clusters[second >> 5 & 3]
+                                       : searches                ? trackers_of_searches[second & 3]
+                                                                 : trackers[choice & 3];
     union {
         struct mh_luo_config luo;
         struct mh_diffusion_config diffusion;
@@ -288,6 +371,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         struct mh_pftl_config pftl;
         struct mh_msl_config msl;
         struct mh_centroid_config centroid;
+        struct mh_gas_config gas;
     } tracker_config;
     mh_luo_config_default(&tracker_config.luo);
     if (tracker == &mh_tracker_diffusion) {
@@ -304,6 +388,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         mh_msl_config_default(&tracker_config.msl);
     } else if (tracker == &mh_tracker_centroid) {
         mh_centroid_config_default(&tracker_config.centroid);
+    } else if (searches) {
+        mh_gas_config_default(&tracker_config.gas);
     }
     static union tracker_state tracker_state;
     static struct mh_head head;
@@ -311,6 +397,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         struct mh_collection collection;
         struct mh_geographic_collection geographic;
         struct mh_cluster_node cluster;
+        struct mh_token_node token;
     } protocol_state;
     struct mh_geographic_collection_config protocol_config;
     mh_geographic_collection_config_default(&protocol_config);
@@ -320,14 +407,22 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                               &sink);
     cluster_config.election.interval = INTERVAL;
     cluster_config.wake_period = second & 8 ? 250 : 0;
-    const int clusters = second >= 128, geographic = !clusters && (choice & 16) != 0;
+    struct mh_token_config token_config;
+    mh_token_config_default(&token_config, cluster_config.sink, &sink);
+    token_config.start = second & 4 ? 7 : MH_BROADCAST;
+    token_config.interval = INTERVAL;
+    token_config.window = INTERVAL / 2;
+    const int geographic = !clusters && !searches && (choice & 16) != 0;
     const struct mh_head_config head_config = {
         .tracker = tracker,
         .tracker_config = &tracker_config,
         .tracker_state = &tracker_state,
         .interval = INTERVAL,
-        .window = clusters ? cluster_config.window : 900,
-        .tolerance = clusters ? INTERVAL / 4 : 0,
+        .window = clusters   ? cluster_config.window
+                  : searches ? token_config.window
+                             : 900,
+        .tolerance = clusters || searches ? INTERVAL / 4 : 0,
+        .own_first = searches,
     };
     struct mh_clock clock;
     const struct mh_clock_config clock_config = {
@@ -337,9 +432,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .sensor = &sensor,
         .head = choice & 4 ? NULL : &head_config,
         .protocol = clusters     ? &mh_protocol_cluster
+                    : searches   ? &mh_protocol_token
                     : geographic ? &mh_protocol_geographic
                                  : &mh_protocol_collection,
         .protocol_config = clusters     ? (const void *)&cluster_config
+                           : searches   ? (const void *)&token_config
                            : geographic ? (const void *)&protocol_config
                                         : &protocol_config.collection,
         .protocol_state = &protocol_state,
@@ -349,6 +446,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .clock_state = &clock,
     };
     struct world world = {.geographic = geographic,
+                          .searches = searches,
+                          .sink = token_config.sink,
                           .now = choice & 8 ? 0xFFFFE000u : 5000}; /* also across the wrap of the ticks */
     require(mh_mote_init(&world.mote, &config, &port, &world, world.now) == MH_OK);
     for (int i = 0; i < EVENTS_MAX && input.left > 0; i++) {

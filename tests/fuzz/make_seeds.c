@@ -111,6 +111,56 @@ static int save_cluster(const char *folder, const char *name, uint8_t choice, ui
     return save(folder, name, input, length);
 }
 
+/* The mote hears neighbours and begins a search; at every instant five nodes answer, it measures itself, and hands the token on, which is handed back. */
+static int save_search(const char *folder, const char *name, uint8_t choice, uint8_t second)
+{
+    uint8_t input[2048] = {choice, second};
+    size_t length = 2;
+    for (int neighbour = 0; neighbour < 8; neighbour++) {
+        const uint8_t event[] = {6, (uint8_t)(8 + neighbour), (uint8_t)(100 + 8 * neighbour), (uint8_t)(neighbour * 30),
+                                 1};
+        for (size_t i = 0; i < sizeof event; i++) {
+            input[length++] = event[i];
+        }
+    }
+    const uint8_t begin[] = {7, 3, 9, 1, 0, 77}, list[] = {7, 5, 9, 0, 131};
+    for (size_t i = 0; i < sizeof begin; i++) {
+        input[length++] = begin[i];
+    }
+    for (size_t i = 0; i < sizeof list; i++) {
+        input[length++] = list[i];
+    }
+    for (int instant = 0; instant < 12; instant++) {
+        for (int node = 0; node < 5; node++) {
+            const uint8_t event[] = {7,
+                                     1,
+                                     (uint8_t)(8 + node),
+                                     0,
+                                     (uint8_t)(110 + 9 * node),
+                                     (uint8_t)(node * 20),
+                                     (uint8_t)(20 + 10 * node + instant),
+                                     (uint8_t)(5 * instant + node)};
+            for (size_t i = 0; i < sizeof event; i++) {
+                input[length++] = event[i];
+            }
+        }
+        for (int k = 0; k < 6; k++) { /* time, and the fate of what was sent in it */
+            input[length++] = 4;
+            input[length++] = 11; /* 176 ms */
+            input[length++] = (uint8_t)(k == 3 ? instant % 3 : 0);
+        }
+        const uint8_t asks[] = {7, 0, (uint8_t)(8 + instant % 5), (uint8_t)(2 * instant), 128};
+        for (size_t i = 0; i < sizeof asks; i++) {
+            input[length++] = asks[i];
+        }
+    }
+    const uint8_t leak[] = {7, 4, 9, 30, 128, 0x41, 0, 0, 0};
+    for (size_t i = 0; i < sizeof leak; i++) {
+        input[length++] = leak[i];
+    }
+    return save(folder, name, input, length);
+}
+
 /* A track as `tracker` saves it after three instants with five ranges, then six instants of fuzz_track.c. */
 static int save_saved(const char *folder, const char *name, uint8_t choice, const struct mh_tracker *tracker,
                       const void *config)
@@ -283,6 +333,30 @@ int main(int argc, char **argv)
             failed = failed || save_cluster(mote, name, (uint8_t)choice, (uint8_t)second);
         }
     }
+    for (uint8_t choice = 0; choice < 64; choice += 12) {
+        for (uint8_t second = 64; second < 96; second++) {
+            char name[20];
+            snprintf(name, sizeof name, "search%u_%u", choice, second);
+            failed = failed || (second % 8 < 4 && save_search(mote, name, choice, second));
+        }
+    }
+    const struct mh_message token = {.kind = MH_MESSAGE_TOKEN,
+                                     .as.token = {.sender = 8, .track = 1, .generation = 5, .holder = 9, .state = 1}};
+    struct mh_message vicinity = {.kind = MH_MESSAGE_VICINITY, .as.vicinity = {.sender = 8, .count = 2}};
+    for (int i = 0; i < MH_VICINITY_NODES; i++) {
+        vicinity.as.vicinity.id[i] = i < 2 ? 10 + i : -1;
+        vicinity.as.vicinity.y_mm[i] = i < 2 ? -30000 : 0;
+    }
+    const struct mh_message leak = {.kind = MH_MESSAGE_LEAK,
+                                    .as.leak = {.track = 1,
+                                                .generation = 4,
+                                                .time_ms = 14000,
+                                                .x_mm = 50000,
+                                                .rate = {0x41, 0xF0},
+                                                .spread = {0x40, 0x80, [8] = 0x41},
+                                                .heads = 7}};
+    failed = failed || save_frame(wire, "token", &token) || save_frame(wire, "vicinity", &vicinity) ||
+             save_frame(wire, "leak", &leak);
     struct mh_range_config range;
     struct mh_pftl_config pftl;
     struct mh_msl_config msl;
