@@ -142,15 +142,19 @@ void mh_token_hear_answer(struct mh_token_node *t, const mh_answer_t *answer)
 
 /* ---- what is found ---- */
 
-/* Covariance of position and rate, as far as the tracker states it. */
+/* Covariance of position and rate, as far as the tracker states it; none if it is beyond all numbers. */
 static void put_spread(const struct mh_estimate *estimate, uint8_t *bytes)
 {
-    const bool of_position = estimate->states >= 2, of_rate = estimate->states == 3;
-    const mh_real spread[6] = {of_position ? estimate->covariance.xx : 0,  of_position ? estimate->covariance.xy : 0,
-                               of_position ? estimate->covariance.yy : 0,  of_rate ? estimate->covariance_more[0] : 0,
-                               of_rate ? estimate->covariance_more[1] : 0, of_rate ? estimate->covariance_more[2] : 0};
+    const mh_real spread[6] = {estimate->covariance.xx,      estimate->covariance.xy,
+                               estimate->covariance.yy,      estimate->covariance_more[0],
+                               estimate->covariance_more[1], estimate->covariance_more[2]};
+    const uint8_t stated = estimate->states == 3 ? 6 : estimate->states >= 2 ? 3 : 0;
+    bool finite = true;
+    for (uint8_t i = 0; i < stated; i++) {
+        finite = finite && mh_finite(spread[i]);
+    }
     for (uint8_t i = 0; i < 6; i++) {
-        mh_put_real(&bytes, spread[i]);
+        mh_put_real(&bytes, finite && i < stated ? spread[i] : 0);
     }
 }
 

@@ -328,7 +328,8 @@ static void a_node_says_hello_and_whom_it_hears(void)
     }
     pass(MH_TOKEN_START);
     TEST_ASSERT_EQUAL(5, saw.of_kind[MH_MESSAGE_HELLO]);
-    TEST_ASSERT_EQUAL(4, saw.of_kind[MH_MESSAGE_VICINITY]); /* after the last two; nine neighbours take two lists; the sink is none */
+    TEST_ASSERT_EQUAL(
+        4, saw.of_kind[MH_MESSAGE_VICINITY]); /* after the last two; nine neighbours take two lists; the sink is none */
     TEST_ASSERT_EQUAL(MH_MESSAGE_VICINITY, saw.message.kind);
     TEST_ASSERT_EQUAL(3, saw.message.as.vicinity.count);
     TEST_ASSERT_EQUAL_INT32(108, saw.message.as.vicinity.id[2]);
@@ -578,6 +579,19 @@ static void what_is_found_goes_to_the_sink(void)
     for (uint8_t i = 0; i < 6; i++) {
         TEST_ASSERT_TRUE(mh_get_real(&spread) == expected[i]);
     }
+}
+
+static void a_covariance_beyond_all_numbers_is_not_sent(void)
+{
+    static const uint8_t none[24] = {0};
+    struct mh_estimate estimate = {.time = FIRST, .covariance = {4, 1, 9}, .states = 3};
+    estimate.covariance_more[2] = (mh_real)INFINITY;
+    be_head(FIRST - 100);
+    pass(FIRST + W);
+    token->closed(&state, AHEAD + FIRST + W, FIRST, &estimate, NULL, 0);
+    settle(FIRST + W);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_LEAK]);
+    TEST_ASSERT_EQUAL_MEMORY(none, saw.leak.as.leak.spread, sizeof none);
 }
 
 static void without_a_score_the_nearest_to_the_estimate_is_next(void)
@@ -1067,6 +1081,7 @@ int main(void)
     RUN_TEST(who_has_not_answered_is_asked_once_more);
     RUN_TEST(the_token_goes_to_the_best_in_parts);
     RUN_TEST(what_is_found_goes_to_the_sink);
+    RUN_TEST(a_covariance_beyond_all_numbers_is_not_sent);
     RUN_TEST(without_a_score_the_nearest_to_the_estimate_is_next);
     RUN_TEST(of_equals_the_lowest_is_next);
     RUN_TEST(a_dead_head_is_not_chosen);
