@@ -63,7 +63,7 @@ static void what_a_part_does_not_fill_is_zero(void)
 static void parts_come_in_any_order_and_more_than_once(void)
 {
     const uint8_t order[] = {2, 0, 2, 3, 0}; /* of 0, 1, 2, 3 */
-    for (uint8_t i = 0; i < sizeof order; i++) {
+    for (size_t i = 0; i < sizeof order; i++) {
         const mh_hand_over_t part = part_of(193, order[i], 1);
         TEST_ASSERT_EQUAL(i == 2 || i == 4 ? MH_ERR_REPEATED : MH_NONE, join(&part));
     }

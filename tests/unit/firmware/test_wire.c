@@ -400,7 +400,7 @@ static void fields_that_nobody_writes_are_corrupt(void)
     bad[8].as.request.sender_x_mm = INT32_MAX;
     bad[9].as.hello.x_mm = INT32_MIN;
     bad[10].as.landmark.beacon.tracking = 2;
-    for (uint8_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         encode(&bad[i]);
         TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_wire_decode(mh_wire_all, frame, length, &decoded));
     }
