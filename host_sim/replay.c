@@ -46,6 +46,7 @@ static struct truth truth_at(const struct recording *recording, double time_s)
     const double span = rows[high].time_s - rows[low].time_s;
     const double share = span > 0 ? (time_s - rows[low].time_s) / span : 0;
     truth.present = true;
+    truth.rate = rows[low].rate_mlps + share * (rows[high].rate_mlps - rows[low].rate_mlps);
     truth.x_m = rows[low].x_m + share * (rows[high].x_m - rows[low].x_m);
     truth.y_m = rows[low].y_m + share * (rows[high].y_m - rows[low].y_m);
     if (span > 0) {
@@ -103,6 +104,19 @@ static int schedule(struct replay *replay, uint64_t tick)
     return network_schedule(&replay->network, (tick + replay->lead) * (SIM_TIME_PER_S / MH_TICKS_PER_S));
 }
 
+static int32_t q20(double value) { return (int32_t)lround(fmin(fmax(ldexp(value, 20), INT32_MIN), INT32_MAX)); }
+
+/* A node measures a value, and the wind where somebody asks for it. */
+static void read(struct replay *replay, const struct recorded_reading *reading)
+{
+    const uint32_t mote = replay->motes[reading->node];
+    network_reading(&replay->network, mote, q20(reading->value), reading->target);
+    if (replay->recording->candidate_count > 0) {
+        network_reading(&replay->network, mote, q20(reading->wind_x_mps), MH_TARGET_WIND_X);
+        network_reading(&replay->network, mote, q20(reading->wind_y_mps), MH_TARGET_WIND_Y);
+    }
+}
+
 /* A sampling instant, or readings, or both. */
 static int work(void *context)
 {
@@ -118,9 +132,7 @@ static int work(void *context)
         replay->instant += replay->interval;
     }
     for (; replay->next < recording->reading_count && ticks(recording, replay->next) == now; replay->next++) {
-        const struct recorded_reading *reading = &recording->readings[replay->next];
-        const int32_t q20 = (int32_t)lround(fmin(fmax(ldexp(reading->value, 20), INT32_MIN), INT32_MAX));
-        network_reading(&replay->network, replay->motes[reading->node], q20, reading->target);
+        read(replay, &recording->readings[replay->next]);
     }
     uint64_t next = replay->instant;
     if (replay->next < recording->reading_count && ticks(recording, replay->next) < next) {
@@ -187,8 +199,11 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
     };
     struct mote_kit *kit = &roster->kit;
     roster->seed = seed;
-    if (tracker_choose(scenario, NULL, &kit->tracker, error, error_size) ||
-        protocol_choose("direct", scenario, &kit->protocol, error, error_size) ||
+    const int chosen =
+        recording->candidate_count > 0
+            ? tracker_choose_candidates(scenario, recording, interval_s, &kit->tracker, error, error_size)
+            : tracker_choose(scenario, NULL, &kit->tracker, error, error_size);
+    if (chosen != 0 || protocol_choose("direct", scenario, &kit->protocol, error, error_size) ||
         find_motes(replay, error, error_size)) {
         return -1;
     }

@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static mh_tick ticks(double seconds) { return (mh_tick)lround(seconds * MH_TICKS_PER_S); }
+
 static void set_up_luo(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
     struct mh_luo_config *config = &choice->config.luo;
@@ -270,6 +272,39 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
     return -1;
 }
 
+int tracker_choose_candidates(const struct scenario *scenario, const struct recording *recording, double interval_s,
+                              struct tracker_choice *choice, char *error, size_t error_size)
+{
+    if (strcmp(scenario->tracker.name, mh_tracker_gas_wind.name) != 0) {
+        snprintf(error, error_size, "tracker.name: `%s`, expected gas where there are candidates",
+                 scenario->tracker.name);
+        return -1;
+    }
+    if (!recording->has_wind) {
+        snprintf(error, error_size,
+                 "the readings have no columns wind_speed_mps and wind_toward_rad, which candidates need");
+        return -1;
+    }
+    const double unit_ppm = scenario->sensor.unit_ppm, hours = interval_s / 3600;
+    struct mh_gas_wind_config *config = &choice->config.gas_wind;
+    *choice = (struct tracker_choice){.tracker = &mh_tracker_gas_wind, .measures = QUANTITY_GAS};
+    mh_gas_wind_config_default(config);
+    config->place_count = (uint16_t)recording->candidate_count;
+    for (uint16_t i = 0; i < config->place_count; i++) {
+        config->places[i] = place_from_metres(recording->candidates[i].x_m, recording->candidates[i].y_m, 0);
+    }
+    config->unit = (mh_real)unit_ppm;
+    config->mixing_m = (mh_real)scenario->tracker.mixing_m;
+    config->direction_sd_rad = (mh_real)scenario->tracker.wind_sd_rad;
+    config->background.quantile = (mh_real)scenario->tracker.background_quantile;
+    config->background.step = (mh_real)(scenario->tracker.background_ppmph * hours / unit_ppm);
+    config->learn = ticks(scenario->tracker.learn_s);
+    config->memory = ticks(scenario->tracker.memory_s);
+    config->correlation = (mh_real)fmax(scenario->tracker.correlation_s / interval_s, 1);
+    config->place_sd_m = (mh_real)scenario->tracker.place_sd_m;
+    return 0;
+}
+
 void tracker_seed(struct tracker_choice *choice, uint32_t seed)
 {
     if (choice->tracker == &mh_tracker_pftl) {
@@ -286,8 +321,6 @@ uint32_t tracker_draws(const struct tracker_choice *choice, const void *state)
     }
     return choice->tracker == &mh_tracker_msl ? ((const struct mh_msl *)state)->draws : 0;
 }
-
-static mh_tick ticks(double seconds) { return (mh_tick)lround(seconds * MH_TICKS_PER_S); }
 
 struct mh_election_config election_config_of(const struct scenario *scenario)
 {

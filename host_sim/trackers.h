@@ -12,12 +12,14 @@
 #include "motehound/fixed.h"
 #include "motehound/fusion_centre.h"
 #include "motehound/gas.h"
+#include "motehound/gas_wind.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/mote.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
+#include "scenario/recording.h"
 #include "scenario/scenario.h"
 #include "world/chatter.h"
 
@@ -36,6 +38,7 @@ struct tracker_choice {
         struct mh_centroid_config centroid;
         struct mh_gas_config gas;
         struct mh_cv_config cv;
+        struct mh_gas_wind_config gas_wind;
     } config;                                      /* the tracker's own */
     struct mh_cv_noise noise[CLUSTERED_NODES_MAX]; /* of fixed clusters' nodes */
 };
@@ -73,6 +76,11 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
 
 /* The fusion centre that scenario->fusion names. */
 void centre_choose(const struct scenario *scenario, struct centre_choice *choice);
+
+/* The tracker `gas` of a recording whose leak can only be at the candidates and whose winds are measured, with readings each interval_s. Returns as
+ * tracker_choose. */
+int tracker_choose_candidates(const struct scenario *scenario, const struct recording *recording, double interval_s,
+                              struct tracker_choice *choice, char *error, size_t error_size);
 
 /* Its random numbers, if it has any, come from `seed`. */
 void tracker_seed(struct tracker_choice *choice, uint32_t seed);

@@ -11,8 +11,8 @@ class Refused(Exception):
     """One line: file, line, and what was expected."""
 
 
-def read_columns(path, names, encoding="utf-8"):
-    """Yields (line, [value, ...]) for the columns called `names`, all finite numbers, as float."""
+def read_rows(path, names, encoding="utf-8"):
+    """Yields (line, [text, ...]) for the columns called `names`."""
     try:
         with open(path, newline="", encoding=encoding) as file:
             rows = csv.reader(file)
@@ -29,16 +29,7 @@ def read_columns(path, names, encoding="utf-8"):
                 line = rows.line_num
                 if len(row) != len(header):
                     raise Refused(f"{path}:{line}: {len(row)} columns, expected {len(header)}")
-                values = []
-                for name, place in zip(names, places):
-                    try:
-                        value = float(row[place])
-                    except ValueError:
-                        value = math.nan
-                    if not math.isfinite(value):
-                        raise Refused(f"{path}:{line}: {name}: `{row[place]}`, expected a finite number")
-                    values.append(value)
-                yield line, values
+                yield line, [row[place] for place in places]
     except OSError as error:
         raise Refused(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -47,13 +38,34 @@ def read_columns(path, names, encoding="utf-8"):
         raise Refused(f"{path}:{rows.line_num}: {error}") from error
 
 
+def number(path, line, name, text):
+    """`text` as a finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise Refused(f"{path}:{line}: {name}: `{text}`, expected a finite number")
+    return value
+
+
+def read_columns(path, names, encoding="utf-8"):
+    """As read_rows, but all are finite numbers, as float."""
+    for line, row in read_rows(path, names, encoding):
+        yield line, [number(path, line, name, text) for name, text in zip(names, row)]
+
+
 def write_recording(folder, nodes, readings, truth):
     """nodes: (node, x_m, y_m, z_m); readings: (time_s, node, value); truth: (time_s, x_m, y_m). All three files, or none."""
-    tables = [
+    write_tables(folder, [
         ("nodes.csv", "node,x_m,y_m,z_m", nodes, "{},{:.4f},{:.4f},{:.4f}"),
         ("readings.csv", "time_s,node,value", readings, "{:.3f},{},{:.6f}"),
         ("truth.csv", "time_s,x_m,y_m", truth, "{:.3f},{:.4f},{:.4f}"),
-    ]
+    ])
+
+
+def write_tables(folder, tables):
+    """tables: (file name, header, rows, format of a row). All files, or none."""
     written = []
     try:
         os.makedirs(folder, exist_ok=True)

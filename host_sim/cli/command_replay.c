@@ -7,14 +7,15 @@
 #include <stdio.h>
 
 static const char help[] =
-    "motehound replay --nodes nodes.csv --readings readings.csv --tracker NAME [--truth truth.csv] [--scenario "
-    "SCENARIO]\n"
-    "                 [--set key=value]... [--out DIR] [--bus URL] [--log]\n"
+    "motehound replay --nodes nodes.csv --readings readings.csv --tracker NAME [--truth truth.csv] [--candidates "
+    "places.csv]\n"
+    "                 [--scenario SCENARIO] [--set key=value]... [--out DIR] [--bus URL] [--log]\n"
     "\n"
     "Feeds a recording of a real network through the same motes that `motehound run` simulates.\n"
     "  --nodes FILE     node,x_m,y_m[,z_m]\n"
-    "  --readings FILE  time_s,node,value[,target][,bearing_rad], in order of time\n"
-    "  --truth FILE     time_s,x_m,y_m[,target], in order of time; with it the errors are reported\n"
+    "  --readings FILE  time_s,node,value[,target][,bearing_rad][,wind_speed_mps,wind_toward_rad], in order of time\n"
+    "  --truth FILE     time_s,x_m,y_m[,target][,rate_mlps], in order of time; with it the errors are reported\n"
+    "  --candidates F   place,x_m,y_m: where a leak can be; tracker gas then tells which of them leaks, by the winds\n"
     "  --tracker NAME   as --set tracker.name=NAME\n"
     "  --scenario S     a YAML file or a name of `motehound list` to take the settings from\n"
     "  --set key=value  change any key (`motehound list --keys`); may be repeated\n"
@@ -24,14 +25,15 @@ static const char help[] =
     "\n"
     "The sampling interval is the median spacing of the recording unless sensor.interval_s is set.\n";
 
-enum { NODES, READINGS, TRUTH, TRACKER, SCENARIO, SET, OUT, BUS, LOG, HELP, RULES };
+enum { NODES, READINGS, TRUTH, CANDIDATES, TRACKER, SCENARIO, SET, OUT, BUS, LOG, HELP, RULES };
 
 static const struct option_rule rules[RULES] = {
-    [NODES] = {"--nodes", true, false},       [READINGS] = {"--readings", true, false},
-    [TRUTH] = {"--truth", true, false},       [TRACKER] = {"--tracker", true, false},
-    [SCENARIO] = {"--scenario", true, false}, [SET] = {"--set", true, true},
-    [OUT] = {"--out", true, false},           [BUS] = {"--bus", true, false},
-    [LOG] = {"--log", false, false},          [HELP] = {"--help", false, false},
+    [NODES] = {"--nodes", true, false},     [READINGS] = {"--readings", true, false},
+    [TRUTH] = {"--truth", true, false},     [CANDIDATES] = {"--candidates", true, false},
+    [TRACKER] = {"--tracker", true, false}, [SCENARIO] = {"--scenario", true, false},
+    [SET] = {"--set", true, true},          [OUT] = {"--out", true, false},
+    [BUS] = {"--bus", true, false},         [LOG] = {"--log", false, false},
+    [HELP] = {"--help", false, false},
 };
 
 /* Value of every option but --set; flags have their own name. */
@@ -97,6 +99,10 @@ static int replay(struct command *command, const char *const values[RULES], stru
 {
     if (recording_load(values[NODES], values[READINGS], values[TRUTH], recording, command->error, COMMAND_ERROR_SIZE) !=
         0) {
+        return 1;
+    }
+    if (values[CANDIDATES] != NULL &&
+        recording_load_candidates(values[CANDIDATES], recording, command->error, COMMAND_ERROR_SIZE) != 0) {
         return 1;
     }
     if (recording_check_targets(recording, values[READINGS], values[TRUTH], command->error, COMMAND_ERROR_SIZE) != 0) {

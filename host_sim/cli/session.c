@@ -44,6 +44,33 @@ static void put_cell(double value)
     }
 }
 
+/* What a single run makes of a leak: where it is, which of the candidates that is, and what it releases. */
+static void put_leak(const struct session *session, const struct results *results)
+{
+    const motehound_track_t *last = &results->last;
+    const struct recording *recording = session->batch.recording;
+    if (results->run_count != 1 || !(last->rate > 0)) {
+        return;
+    }
+    printf("leak at x %.1f m, y %.1f m", last->x_m, last->y_m);
+    if (recording != NULL && recording->candidate_count > 0) {
+        const struct recorded_place *nearest = recording->candidates;
+        for (size_t i = 1; i < recording->candidate_count; i++) {
+            const struct recorded_place *place = &recording->candidates[i];
+            if (hypot(place->x_m - last->x_m, place->y_m - last->y_m) <
+                hypot(nearest->x_m - last->x_m, nearest->y_m - last->y_m)) {
+                nearest = place;
+            }
+        }
+        printf(" (place %lu)", (unsigned long)nearest->id);
+    }
+    printf(", releases %.4g mL/s", last->rate);
+    if (last->true_known && last->true_rate > 0) {
+        printf("; true: x %.1f m, y %.1f m, %.4g mL/s", last->true_x_m, last->true_y_m, last->true_rate);
+    }
+    putchar('\n');
+}
+
 static void put_table(const struct session *session, struct results *results)
 {
     static const enum metric shown[] = {METRIC_POSITION_RMSE_M,
@@ -52,6 +79,7 @@ static void put_table(const struct session *session, struct results *results)
                                         METRIC_RAW_POSITION_RMSE_M,
                                         METRIC_POSITION_RMSE_AT_ARRIVAL_M,
                                         METRIC_NEES_MEDIAN,
+                                        METRIC_RATE_RATIO,
                                         METRIC_TRACKED_SHARE,
                                         METRIC_TRACK_LOST,
                                         METRIC_ESTIMATES,
@@ -147,6 +175,7 @@ int session_execute(struct command *command, struct session *session)
         return 1;
     }
     put_table(session, &results);
+    put_leak(session, &results);
     if (results_commit(&results, session->batch.version, error, COMMAND_ERROR_SIZE) != 0) {
         return 1;
     }

@@ -329,6 +329,18 @@ static void metrics_of_search(const struct recorder *recorder, const struct scen
     values[METRIC_RATE_CRLB] = search.rate_crlb;
 }
 
+/* Of the last estimate that there is a truth for. */
+static double rate_ratio_of(const struct recorder *recorder)
+{
+    for (size_t i = recorder->track_count; i > 0; i--) {
+        const motehound_track_t *track = &recorder->tracks[i - 1];
+        if (track->true_known) {
+            return track->rate > 0 && track->true_rate > 0 ? track->rate / track->true_rate : (double)NAN;
+        }
+    }
+    return (double)NAN;
+}
+
 void metrics_of_run(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors,
                     double values[METRIC_COUNT])
 {
@@ -358,6 +370,7 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
         ranged ? error_in_ranges(recorder->sinks, recorder->sink_count, recorder, scenario) : none;
     const double pcrb_m = recorder->totals[TOTAL_PCRB_M];
     values[METRIC_RMSE_OVER_PCRB] = pcrb_m > 0 ? values[METRIC_POSITION_RMSE_M] / pcrb_m : none;
+    values[METRIC_RATE_RATIO] = rate_ratio_of(recorder);
     values[METRIC_LONGEST_GAP_S] = ranged ? longest_gap_s(recorder, scenario->sensor.range_m) : none;
     for (int i = METRIC_SUCCESS_50M; i <= METRIC_RATE_CRLB; i++) {
         values[i] = none;

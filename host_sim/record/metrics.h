@@ -71,7 +71,8 @@ struct errors {
     X(SENSORS_TO_10M, "sensors_to_10m", "gas: the same until the error fell below 10 m for good")                          \
     X(CRLB_M, "crlb_m", "gas: the Cramer-Rao bound of the position from the samples that were heard")                      \
     X(RATE_CRLB, "rate_crlb", "gas: the same of the rate of release, as a share of it")                                    \
-    X(LONGEST_GAP_S, "longest_gap_s", "ranged target: longest time without a head's position within sensor.range_m of the target")
+    X(LONGEST_GAP_S, "longest_gap_s", "ranged target: longest time without a head's position within sensor.range_m of the target") \
+    X(RATE_RATIO, "rate_ratio", "leak: the last estimate of its rate of release over the true one")
 /* clang-format on */
 
 #define METRIC_ENUMERATOR(id, name, meaning) METRIC_##id,

@@ -164,6 +164,7 @@ int results_add(struct results *results, uint64_t seed, const struct scenario *s
     }
     fputc('\n', results->runs);
     put_tracks(results, recorder);
+    results->last = recorder->track_count > 0 ? recorder->tracks[recorder->track_count - 1] : (motehound_track_t){0};
     if (!memory) {
         return fail(error, error_size, "run %u: no memory", results->run_count);
     }

@@ -25,6 +25,7 @@ struct results {
     lcm_eventlog_t *log;   /* NULL without --log */
     int64_t log_offset_us; /* one run after the other */
     unsigned run_count;
+    motehound_track_t last; /* estimate of the run added last; all zero where there was none */
     struct samples metrics[METRIC_COUNT];
     struct errors pooled;
 };

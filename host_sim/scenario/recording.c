@@ -1,5 +1,6 @@
 #include "scenario/recording.h"
 
+#include "motehound/config.h"
 #include "scenario/text.h"
 
 #include <math.h>
@@ -9,9 +10,12 @@
 
 enum { NODES_MIN = 4, COLUMNS_MAX = 8 };
 
+#define WIND_MAX_MPS 100
+
 #define PLACE_MAX_M 1e6
 #define VALUE_MAX 2047.99
 #define TIME_MAX_S 1e12
+#define RATE_MAX_MLPS 1e9
 
 struct column {
     const char *name;
@@ -29,6 +33,7 @@ struct csv {
     size_t column_count;
     int field_column[COLUMNS_MAX]; /* which column each field of a line is */
     size_t field_count;
+    bool present[COLUMNS_MAX];  /* the file has the column */
     double values[COLUMNS_MAX]; /* of the line read last, by column; 0 where the file has no such column */
     char *error;
     size_t error_size;
@@ -81,7 +86,7 @@ static int open_csv(struct csv *csv)
     skip_empty(csv);
     const char *field = csv->at;
     const char *line_end = csv->at + line_length(csv);
-    bool seen[COLUMNS_MAX] = {false};
+    bool *seen = csv->present;
     for (bool more = csv->at < csv->end; more; csv->field_count++) {
         const char *comma = memchr(field, ',', (size_t)(line_end - field));
         const size_t length = (size_t)((comma != NULL ? comma : line_end) - field);
@@ -304,17 +309,25 @@ int recording_parse_readings(const char *text, size_t length, const char *name, 
                                             {"node", true, true, 0, 4294967294.0},
                                             {"value", true, false, -VALUE_MAX, VALUE_MAX},
                                             {"target", false, true, 0, 255},
-                                            {"bearing_rad", false, false, -7, 7}};
+                                            {"bearing_rad", false, false, -7, 7},
+                                            {"wind_speed_mps", false, false, 0, WIND_MAX_MPS},
+                                            {"wind_toward_rad", false, false, -7, 7}};
     struct csv csv = {.at = text,
                       .end = text + length,
                       .name = name,
                       .columns = columns,
-                      .column_count = 5,
+                      .column_count = 7,
                       .error = error,
                       .error_size = error_size};
     if (open_csv(&csv) != 0) {
         return -1;
     }
+    if (csv.present[5] != csv.present[6]) {
+        return fail(error, error_size,
+                    "%s:%zu: expected both columns wind_speed_mps and wind_toward_rad or neither, found one", name,
+                    csv.line - 1);
+    }
+    recording->has_wind = csv.present[5];
     struct indexed *index = index_nodes(recording);
     if (index == NULL) {
         return no_memory(&csv);
@@ -344,7 +357,13 @@ int recording_parse_readings(const char *text, size_t length, const char *name, 
             break;
         }
         recording->readings[recording->reading_count++] =
-            (struct recorded_reading){time_s, index[low].index, csv.values[2], csv.values[4], (uint8_t)csv.values[3]};
+            (struct recorded_reading){.time_s = time_s,
+                                      .node = index[low].index,
+                                      .value = csv.values[2],
+                                      .bearing_rad = csv.values[4],
+                                      .wind_x_mps = csv.values[5] * cos(csv.values[6]),
+                                      .wind_y_mps = csv.values[5] * sin(csv.values[6]),
+                                      .target = (uint8_t)csv.values[3]};
     }
     free(index);
     if (status < 0) {
@@ -363,12 +382,13 @@ int recording_parse_truth(const char *text, size_t length, const char *name, str
     static const struct column columns[] = {{"time_s", true, false, -TIME_MAX_S, TIME_MAX_S},
                                             {"x_m", true, false, -PLACE_MAX_M, PLACE_MAX_M},
                                             {"y_m", true, false, -PLACE_MAX_M, PLACE_MAX_M},
-                                            {"target", false, true, 0, 255}};
+                                            {"target", false, true, 0, 255},
+                                            {"rate_mlps", false, false, 0, RATE_MAX_MLPS}};
     struct csv csv = {.at = text,
                       .end = text + length,
                       .name = name,
                       .columns = columns,
-                      .column_count = 4,
+                      .column_count = 5,
                       .error = error,
                       .error_size = error_size};
     if (open_csv(&csv) != 0) {
@@ -384,13 +404,56 @@ int recording_parse_truth(const char *text, size_t length, const char *name, str
             return no_memory(&csv);
         }
         recording->truths[recording->truth_count++] =
-            (struct recorded_truth){csv.values[0], csv.values[1], csv.values[2], (uint8_t)csv.values[3]};
+            (struct recorded_truth){csv.values[0], csv.values[1], csv.values[2], csv.values[4], (uint8_t)csv.values[3]};
     }
     if (status < 0) {
         return -1;
     }
     if (recording->truth_count == 0) {
         return fail(error, error_size, "%s:%zu: expected at least one row, found none", name, csv.line);
+    }
+    return 0;
+}
+
+int recording_parse_candidates(const char *text, size_t length, const char *name, struct recording *recording,
+                               char *error, size_t error_size)
+{
+    static const struct column columns[] = {{"place", true, true, 0, 4294967294.0},
+                                            {"x_m", true, false, -PLACE_MAX_M, PLACE_MAX_M},
+                                            {"y_m", true, false, -PLACE_MAX_M, PLACE_MAX_M}};
+    struct csv csv = {.at = text,
+                      .end = text + length,
+                      .name = name,
+                      .columns = columns,
+                      .column_count = 3,
+                      .error = error,
+                      .error_size = error_size};
+    if (open_csv(&csv) != 0) {
+        return -1;
+    }
+    int status = 1;
+    for (bool first = true; (status = read_row(&csv, first)) == 1; first = false) {
+        const uint32_t id = (uint32_t)csv.values[0];
+        for (size_t i = 0; i < recording->candidate_count; i++) {
+            if (recording->candidates[i].id == id) {
+                return fail(error, error_size, "%s:%zu: place: expected each once, found %lu again", name, csv.line,
+                            (unsigned long)id);
+            }
+        }
+        if (recording->candidate_count == MH_LEAK_PLACES_MAX) {
+            return fail(error, error_size, "%s:%zu: expected at most %d places, found more", name, csv.line,
+                        MH_LEAK_PLACES_MAX);
+        }
+        if (!grow((void **)&recording->candidates, recording->candidate_count, sizeof *recording->candidates)) {
+            return no_memory(&csv);
+        }
+        recording->candidates[recording->candidate_count++] = (struct recorded_place){id, csv.values[1], csv.values[2]};
+    }
+    if (status < 0) {
+        return -1;
+    }
+    if (recording->candidate_count == 0) {
+        return fail(error, error_size, "%s:%zu: expected at least one place, found none", name, csv.line);
     }
     return 0;
 }
@@ -418,6 +481,11 @@ int recording_load_nodes(const char *nodes_path, struct recording *recording, ch
         recording_free(recording);
     }
     return status;
+}
+
+int recording_load_candidates(const char *path, struct recording *recording, char *error, size_t error_size)
+{
+    return load(recording_parse_candidates, path, recording, error, error_size);
 }
 
 int recording_load(const char *nodes_path, const char *readings_path, const char *truth_path,
@@ -464,5 +532,6 @@ void recording_free(struct recording *recording)
     free(recording->nodes);
     free(recording->readings);
     free(recording->truths);
+    free(recording->candidates);
     memset(recording, 0, sizeof *recording);
 }

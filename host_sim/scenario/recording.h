@@ -1,9 +1,12 @@
 /* A recording of a real network, from CSV: nodes (`node,x_m,y_m[,z_m]`), readings
- * (`time_s,node,value[,target][,bearing_rad]`) and, optionally, the truth (`time_s,x_m,y_m[,target]`).
+ * (`time_s,node,value[,target][,bearing_rad][,wind_speed_mps,wind_toward_rad]`) and, optionally, the truth
+ * (`time_s,x_m,y_m[,target][,rate_mlps]`) and the places where a leak can be (`place,x_m,y_m`).
+ *
+ * The wind is what the node measures beside the value: its speed and where it blows to, counter-clockwise from the x axis; one column needs the other.
  *
  * The first line names the columns, in any order. Errors are one line: file, line, column and what was expected.
  * Refused are NaN and infinity, numbers outside their range, an unknown or a duplicate node, time going backwards, a
- * missing or an unknown column, fewer than four nodes, a file without rows. Lines may end in LF or CRLF; empty lines
+ * missing or an unknown column, fewer than four nodes, a place twice, a file without rows. Lines may end in LF or CRLF; empty lines
  * are skipped. */
 #ifndef MOTEHOUND_SIM_RECORDING_H
 #define MOTEHOUND_SIM_RECORDING_H
@@ -19,15 +22,22 @@ struct recorded_node {
 
 struct recorded_reading {
     double time_s;
-    size_t node;        /* index into nodes */
-    double value;       /* -2047.99 to 2047.99: what a mote's Q11.20 holds */
-    double bearing_rad; /* 0 without the column */
-    uint8_t target;     /* 0 without the column */
+    size_t node;                   /* index into nodes */
+    double value;                  /* -2047.99 to 2047.99: what a mote's Q11.20 holds */
+    double bearing_rad;            /* 0 without the column */
+    double wind_x_mps, wind_y_mps; /* where it blows to; 0 without the columns */
+    uint8_t target;                /* 0 without the column */
 };
 
 struct recorded_truth {
     double time_s, x_m, y_m;
+    double rate_mlps; /* of release; 0 without the column */
     uint8_t target;
+};
+
+struct recorded_place {
+    uint32_t id;
+    double x_m, y_m;
 };
 
 /* In the order of the files, so by time. */
@@ -38,6 +48,9 @@ struct recording {
     size_t reading_count;
     struct recorded_truth *truths; /* NULL and 0 without a truth file */
     size_t truth_count;
+    struct recorded_place *candidates; /* where the leak can be; NULL and 0 without such a file */
+    size_t candidate_count;
+    bool has_wind;
     double interval_s; /* median spacing of the readings of one node and target, rounded to 1 ms */
 };
 
@@ -49,10 +62,15 @@ int recording_parse_readings(const char *text, size_t length, const char *name, 
                              char *error, size_t error_size);
 int recording_parse_truth(const char *text, size_t length, const char *name, struct recording *recording, char *error,
                           size_t error_size);
+int recording_parse_candidates(const char *text, size_t length, const char *name, struct recording *recording,
+                               char *error, size_t error_size);
 
-/* The three from files; `truth_path` may be NULL. Returns 0, or -1 with one line in `error` and nothing to free. */
+/* The first three from files; `truth_path` may be NULL. Returns 0, or -1 with one line in `error` and nothing to free. */
 int recording_load(const char *nodes_path, const char *readings_path, const char *truth_path,
                    struct recording *recording, char *error, size_t error_size);
+
+/* The places from a file, added to a recording that was loaded. Returns 0, or -1 with one line in `error`; the recording is still to be freed. */
+int recording_load_candidates(const char *path, struct recording *recording, char *error, size_t error_size);
 
 /* Only nodes.csv, as network.file wants it. */
 int recording_load_nodes(const char *nodes_path, struct recording *recording, char *error, size_t error_size);

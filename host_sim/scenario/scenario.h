@@ -208,6 +208,11 @@ struct scenario {
         enum resampling_kind resampling; /* pftl */
         bool literal;                    /* pftl: the region widens as published */
         double ukf_alpha;                /* cv_ukf: spread of the sigma points */
+        /* gas, where the wind is measured and the leak is at one of several places: the air's mixing length K / u, sd of the plume's axis about the
+         * wind, the share of a sensor's readings below its background and how fast that may move, ppm/h, how long it is learned, for how long readings are
+         * remembered and how long their errors stay alike, and the sd of the leak about its place */
+        double mixing_m, wind_sd_rad, background_quantile, background_ppmph, learn_s, memory_s, correlation_s,
+            place_sd_m;
         double window_s; /* reports are waited for this long after a sampling instant; 0: half the interval */
         double prior_x_m, prior_y_m, prior_sd_x_m,
             prior_sd_y_m; /* gas: where the source is expected; 0, 0, 0, 0: the field */

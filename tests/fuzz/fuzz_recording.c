@@ -1,4 +1,4 @@
-/* Recordings: three CSV texts, nodes, readings and truth, divided by lines with a single '%'. */
+/* Recordings: four CSV texts, nodes, readings, truth and candidates, divided by lines with a single '%'. */
 #include "fuzz.h"
 #include "scenario/recording.h"
 
@@ -10,11 +10,12 @@ typedef int parser(const char *text, size_t length, const char *name, struct rec
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static parser *const parsers[3] = {recording_parse_nodes, recording_parse_readings, recording_parse_truth};
+    static parser *const parsers[4] = {recording_parse_nodes, recording_parse_readings, recording_parse_truth,
+                                       recording_parse_candidates};
     struct recording recording = {0};
     char error[1000] = "";
     const uint8_t *part = data, *end = data + size;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         const uint8_t *mark = part < end ? memchr(part, '%', (size_t)(end - part)) : NULL;
         const size_t length = (size_t)((mark != NULL ? mark : end) - part);
         char *text = malloc(length + 1); /* so that a step beyond the text is seen */
@@ -30,6 +31,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (size_t i = 0; i < recording.reading_count; i++) {
         require(recording.readings[i].node < recording.node_count && isfinite(recording.readings[i].value));
+        require(hypot(recording.readings[i].wind_x_mps, recording.readings[i].wind_y_mps) <= 101);
         require(i == 0 || recording.readings[i].time_s >= recording.readings[i - 1].time_s);
     }
     recording_free(&recording);

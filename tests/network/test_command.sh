@@ -95,6 +95,26 @@ grep -q position_rmse_m replayed/summary.json || complain "no errors with a trut
 [ "$(head -1 replayed/track.csv | cut -d, -f1-10)" = run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m ] ||
     complain "columns of track.csv"
 
+# which of two places leaks: the wind blows in turns from the second to the first node and back, and the first place lies between them
+printf 'place,x_m,y_m\n4,5,0\n9,5,10\n' >places.csv
+{ echo time_s,node,value,wind_speed_mps,wind_toward_rad
+  for t in {0..39}; do
+      toward=$((t / 4 % 2)) && for n in 0 1 2 3; do
+          echo "$((60 * t)),$n,$((2 + (t > 9 && n == 1 - toward) * 5)),3,$(awk "BEGIN { print $toward * 3.14159 }")"
+      done
+  done; } >readings.csv
+printf 'time_s,x_m,y_m,rate_mlps\n600,5,0,100\n2340,5,0,100\n' >truth.csv
+leak=("$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv --set sensor.unit_ppm=1 --set tracker.learn_s=600 --out leaked)
+accepted "${leak[@]}" --tracker gas --candidates places.csv --truth truth.csv
+grep -q '^leak at x 5.0 m, y 0.0 m (place 4), releases .*; true: x 5.0 m, y 0.0 m, 100 mL/s' out.txt || complain "no leak: $(cat out.txt)"
+grep -q '"rate_ratio"' leaked/summary.json || complain "no rate_ratio"
+refused '^tracker.name: .luo., expected gas where there are candidates' "${leak[@]}" --tracker luo --candidates places.csv
+printf 'place,x_m,y_m\n4,5,0\n4,5,10\n' >places.csv
+refused '^places.csv:3: place: expected each once, found 4 again' "${leak[@]}" --tracker gas --candidates places.csv
+printf 'place,x_m,y_m\n4,5,0\n' >places.csv
+cut -d, -f1-3 readings.csv >calm.csv
+refused 'no columns wind_speed_mps' "$MOTEHOUND" replay --nodes nodes.csv --readings calm.csv --tracker gas --candidates places.csv --out leaked
+
 # clusters: what the sink has is never farther from the head's position than the tolerance; of two scenarios one has frames
 followed=(--set tracker.name=pftl --set source.duration_s=400 --seed 1)
 accepted "$MOTEHOUND" run zhou_nominal "${followed[@]}" --out followed

@@ -2,8 +2,10 @@
 
 Standard library only, as the converters. MOTEHOUND: the command; MOTEHOUND_SHARED_DATA: the folder of real recordings."""
 
+import csv
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -135,6 +137,78 @@ class Plaza(Case):
         metrics = json.loads((self.folder / "replay/summary.json").read_text())["metrics"]
         self.assertLess(metrics["position_rmse_m"]["mean"], 1.5)
         self.assertTrue(0.5 < metrics["nees_median"]["mean"] < 3)
+
+
+class Metec(Case):
+    COLUMNS = ("tc_ExperimentID,tc_EquipmentGroupID,tc_ExpEPCount,tc_ExpStartDatetime,tc_ExpEndDatetime,tc_Longitude,tc_Latitude,"
+               "tc_C1MassFlow\n")
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "sensor_locations.csv").write_text("\ufefflon,lat,height,name\n-105.1399,40.5968,2.4,N\n-105.1389,40.5958,3,E")
+        (self.folder / "source_locations.csv").write_text("\ufefflon,lat,height,name\n-105.1399,40.5958,4,Tank\n")
+        self.minutes("".join(f"{60 * i},{2 + i}.5,{'' if i == 2 else 7},1.5,3.1\n" for i in range(6)))
+        self.leaks("7,4T,1,1970-01-01 00:02:00+00:00,1970-01-01 00:04:30+00:00,-105.1399,40.5968,1000\n")
+
+    def minutes(self, rows):
+        (self.folder / "obs_wind_day.csv").write_text(
+            "epoch_utc_s,CH4_ppm_E,CH4_ppm_N,wind_speed_mps,wind_toward_rad_ccw_from_east\n" + rows)
+
+    def leaks(self, rows):
+        (self.folder / "leak_data.csv").write_text(self.COLUMNS + rows)
+
+    def test_known_recording(self):
+        result = convert("metec", self.folder, self.out, "--lead", "1", "--density", "0.5")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual((self.out / "releases.csv").read_text().splitlines(),
+                         ["release,begin_utc,hours,place,name,rate_mlps", "7,1970-01-01T00:02,0.04,1,Tank,555.6"])
+        self.assertEqual((self.out / "7/nodes.csv").read_text().splitlines(),
+                         ["node,x_m,y_m,z_m", "1,0.0000,111.1949,2.4000", "2,84.4324,0.0000,3.0000"])
+        # from a minute before the release to its end; the reading that is missing is left out
+        self.assertEqual((self.out / "7/readings.csv").read_text().splitlines(),
+                         ["time_s,node,value,wind_speed_mps,wind_toward_rad", "0.000,1,7.000000,1.5000,3.1000",
+                          "0.000,2,3.500000,1.5000,3.1000", "60.000,2,4.500000,1.5000,3.1000"] +
+                         [row for i in (3, 4) for row in (f"{60 * i - 60}.000,1,7.000000,1.5000,3.1000",
+                                                          f"{60 * i - 60}.000,2,{2 + i}.500000,1.5000,3.1000")])
+        self.assertEqual((self.out / "7/truth.csv").read_text().splitlines(),
+                         ["time_s,x_m,y_m,rate_mlps", "60.000,0.0000,111.1949,555.5556", "180.000,0.0000,111.1949,555.5556"])
+        self.assertEqual((self.out / "7/candidates.csv").read_text().splitlines(), ["place,x_m,y_m", "1,0.0000,0.0000"])
+
+    def test_refusals(self):
+        leak = "7,4T,1,1970-01-01 00:02:00+00:00,1970-01-01 00:04:30+00:00,-105.1399,40.5968,1000\n"
+        for change, rows, expected in (
+                (self.leaks, leak.replace(",4T,1", ",4T,2"), "leak_data.csv: no release from a single source"),
+                (self.leaks, leak.replace("4T", "9T"), "leak_data.csv:2: tc_EquipmentGroupID: `9T`, expected one of 4T"),
+                (self.leaks, leak.replace("4T", "5S"), "source_locations.csv: no `Separator.East`"),
+                (self.leaks, leak.replace("7,", "../7,", 1), "leak_data.csv:2: tc_ExperimentID: `../7`"),
+                (self.leaks, leak.replace("1970-01-01 00:02:00+00:00", "noon"), "tc_ExpStartDatetime: `noon`, expected a date"),
+                (self.leaks, leak.replace("1000", "much"), "leak_data.csv:2: tc_C1MassFlow: `much`, expected a finite number"),
+                (self.minutes, "", "obs_wind_day.csv: no readings"),
+                (self.minutes, "60,1,1,1,1\n60,1,1,1,1\n", "obs_wind_day.csv:3: epoch_utc_s: 60, expected more than 60"),
+                (self.minutes, "60,x,1,1,1\n", "obs_wind_day.csv:2: CH4_ppm_E: `x`, expected a finite number")):
+            with self.subTest(expected):
+                self.setUp()
+                change(rows)
+                self.assert_refused(convert("metec", self.folder, self.out), expected)
+
+    @unittest.skipUnless((DATA / "metec_aded2022").is_dir(), f"no recording in {DATA}")
+    @unittest.skipUnless(COMMAND, "the command motehound is not built")
+    def test_replay_finds_the_group_that_leaks(self):
+        self.assertEqual(convert("metec", DATA / "metec_aded2022", self.out).returncode, 0)
+        with open(self.out / "releases.csv", encoding="utf-8", newline="") as file:
+            releases = list(csv.DictReader(file))
+        self.assertEqual(len(releases), 16)
+        right, ratios = 0, []
+        for release in releases:
+            folder = self.out / release["release"]
+            result = subprocess.run([COMMAND, "replay", "--nodes", folder / "nodes.csv", "--readings", folder / "readings.csv",
+                                     "--truth", folder / "truth.csv", "--candidates", folder / "candidates.csv",
+                                     "--scenario", TOOLS.parent / "examples/metec.yaml", "--out", self.folder / "replay"],
+                                    check=True, capture_output=True, text=True)
+            right += f"(place {release['place']})" in result.stdout
+            ratios.append(json.loads((self.folder / "replay/summary.json").read_text())["metrics"]["rate_ratio"]["mean"])
+        self.assertGreaterEqual(right, 14)
+        self.assertTrue(0.8 < statistics.median(ratios) < 1.25, ratios)
 
 
 class Orebro(Case):

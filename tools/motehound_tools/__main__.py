@@ -1,4 +1,4 @@
-"""python -m motehound_tools report | sweep | results | zhou | faults | picture | bound | export | view"""
+"""python -m motehound_tools report | sweep | results | zhou | metec | faults | picture | bound | export | view"""
 
 from __future__ import annotations
 
@@ -42,6 +42,11 @@ def parser() -> argparse.ArgumentParser:
     zhou.add_argument("--out", type=Path, default=Path("out/zhou"), help="where the sweeps go; finished runs are kept")
     zhou.add_argument("--markdown", type=Path, default=Path("docs/zhou.md"), help="the page to write")
 
+    metec = commands.add_parser("metec", help="replay the real leaks and write the page about them")
+    metec.add_argument("data", type=Path, metavar="FOLDER_OF_THE_RECORDING")
+    metec.add_argument("--out", type=Path, default=Path("out/metec"), help="where the recordings and replays go")
+    metec.add_argument("--markdown", type=Path, default=Path("docs/metec.md"), help="the page to write")
+
     faults = commands.add_parser("faults", help="run the scenarios of faults and write the table of faults")
     faults.add_argument("--runs", type=int, default=20)
     faults.add_argument(
@@ -68,7 +73,7 @@ def parser() -> argparse.ArgumentParser:
     shown.add_argument("--bus", metavar="URL", help="such as udpm://239.255.76.67:7667?ttl=0")
     view.add_argument("--port", type=int, default=5006, help="0: any that is free (%(default)s)")
 
-    for one in (sweep, results, zhou, faults, picture):
+    for one in (sweep, results, zhou, metec, faults, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
     return top
 
@@ -98,6 +103,11 @@ def perform(arguments: argparse.Namespace) -> None:
         from . import zhou
 
         zhou.write(arguments.motehound, arguments.out, arguments.markdown, arguments.seeds)
+        print(arguments.markdown)
+    elif arguments.command == "metec":
+        from . import command, metec
+
+        metec.write(command.find(arguments.motehound), arguments.data, arguments.out, arguments.markdown)
         print(arguments.markdown)
     elif arguments.command == "faults":
         from . import command, faults

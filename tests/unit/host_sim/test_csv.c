@@ -1,3 +1,4 @@
+#include "motehound/config.h"
 #include "port.h"
 #include "scenario/recording.h"
 #include "unity.h"
@@ -28,6 +29,11 @@ static int truth(const char *text)
     return recording_parse_truth(text, strlen(text), "t.csv", &recording, error, sizeof error);
 }
 
+static int candidates(const char *text)
+{
+    return recording_parse_candidates(text, strlen(text), "c.csv", &recording, error, sizeof error);
+}
+
 static void columns_may_stand_in_any_order_and_lines_end_in_crlf(void)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(
@@ -43,6 +49,44 @@ static void columns_may_stand_in_any_order_and_lines_end_in_crlf(void)
     TEST_ASSERT_EQUAL_UINT8(2, recording.readings[0].target);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, truth("time_s,x_m,y_m\n0,1,2\n0,1,2\n3,1,2\n"), error);
     TEST_ASSERT_EQUAL_size_t(3, recording.truth_count);
+}
+
+static void winds_rates_and_candidates_are_optional(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, nodes(NODES));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        0,
+        readings(
+            "time_s,wind_toward_rad,node,value,wind_speed_mps\n0,3.14159265358979,1,5,2\n1,-1.5707963267949,2,6,0.5\n"),
+        error);
+    TEST_ASSERT_TRUE(recording.has_wind);
+    TEST_ASSERT_TRUE(fabs(recording.readings[0].wind_x_mps + 2) < 1e-9 &&
+                     fabs(recording.readings[0].wind_y_mps) < 1e-9);
+    TEST_ASSERT_TRUE(fabs(recording.readings[1].wind_x_mps) < 1e-9 &&
+                     fabs(recording.readings[1].wind_y_mps + 0.5) < 1e-9);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, truth("time_s,x_m,y_m,rate_mlps\n0,1,2,300\n3,1,2,0\n"), error);
+    TEST_ASSERT_TRUE(recording.truths[0].rate_mlps == 300 && recording.truths[1].rate_mlps == 0);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, candidates("y_m,place,x_m\n2,7,-1\n0,0,0\n"), error);
+    TEST_ASSERT_EQUAL_size_t(2, recording.candidate_count);
+    TEST_ASSERT_EQUAL_UINT32(7, recording.candidates[0].id);
+    TEST_ASSERT_TRUE(recording.candidates[0].x_m == -1 && recording.candidates[0].y_m == 2);
+    tearDown();
+    setUp();
+    TEST_ASSERT_EQUAL_INT(0, nodes(NODES));
+    TEST_ASSERT_EQUAL_INT(0, readings("time_s,node,value\n0,1,5\n"));
+    TEST_ASSERT_FALSE(recording.has_wind);
+}
+
+static void more_candidates_than_a_head_has_room_for_are_refused(void)
+{
+    char text[20 * (MH_LEAK_PLACES_MAX + 2)] = "place,x_m,y_m\n", message[100];
+    for (unsigned i = 0; i <= MH_LEAK_PLACES_MAX; i++) {
+        sprintf(text + strlen(text), "%u,%u,0\n", i, i);
+    }
+    TEST_ASSERT_EQUAL_INT(-1, candidates(text));
+    snprintf(message, sizeof message, "c.csv:%d: expected at most %d places, found more", MH_LEAK_PLACES_MAX + 2,
+             MH_LEAK_PLACES_MAX);
+    TEST_ASSERT_EQUAL_STRING(message, error);
 }
 
 /* Nodes 1 and 2 every 0.2 s, node 3 every 0.2 s for each of two targets in turn, one gap of 5 s. */
@@ -116,12 +160,24 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_column_and_expectat
          "r.csv:4: time_s: expected at least 2, the time of the row before, found 1.5"},
         {readings, "time_s,node,value\n", "r.csv:2: expected at least one reading, found none"},
         {readings, "time_s,value\n1,1\n",
-         "r.csv:1: expected the columns time_s,node,value,[target],[bearing_rad], found no 'node'"},
+         "r.csv:1: expected the columns "
+         "time_s,node,value,[target],[bearing_rad],[wind_speed_mps],[wind_toward_rad], found no 'node'"},
+        {readings, "\ntime_s,node,value,wind_speed_mps\n1,1,1,1\n",
+         "r.csv:2: expected both columns wind_speed_mps and wind_toward_rad or neither, found one"},
+        {readings, "time_s,node,value,wind_speed_mps,wind_toward_rad\n1,1,1,-1,0\n",
+         "r.csv:2: wind_speed_mps: expected a number 0 to 100, found '-1'"},
+        {readings, "time_s,node,value,wind_speed_mps,wind_toward_rad\n1,1,1,1,\n",
+         "r.csv:2: wind_toward_rad: expected a number -7 to 7, found ''"},
         {readings, "time_s,node,value,target\n1,1,1,256\n",
          "r.csv:2: target: expected a whole number 0 to 255, found '256'"},
         {truth, "time_s,x_m,y_m\n2,0,0\n1,0,0\n",
          "t.csv:3: time_s: expected at least 2, the time of the row before, found 1"},
         {truth, "time_s,x_m,y_m\n", "t.csv:2: expected at least one row, found none"},
+        {truth, "time_s,x_m,y_m,rate_mlps\n2,0,0,-1\n",
+         "t.csv:2: rate_mlps: expected a number 0 to 1000000000, found '-1'"},
+        {candidates, "place,x_m,y_m\n", "c.csv:2: expected at least one place, found none"},
+        {candidates, "place,x_m,y_m\n1,0,0\n2,0,0\n1,5,5\n", "c.csv:4: place: expected each once, found 1 again"},
+        {candidates, "place,x_m,y_m\n1,0,nan\n", "c.csv:2: y_m: expected a number -1000000 to 1000000, found 'nan'"},
         {truth, "time_s,x_m,y_m\n2,inf,0\n", "t.csv:2: x_m: expected a number -1000000 to 1000000, found 'inf'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -152,6 +208,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(columns_may_stand_in_any_order_and_lines_end_in_crlf);
+    RUN_TEST(winds_rates_and_candidates_are_optional);
+    RUN_TEST(more_candidates_than_a_head_has_room_for_are_refused);
     RUN_TEST(the_interval_is_the_median_spacing_of_one_node_and_target);
     RUN_TEST(a_recording_without_two_readings_of_a_node_has_no_interval);
     RUN_TEST(a_bad_file_is_refused_in_one_line_with_file_line_column_and_expectation);

@@ -138,6 +138,25 @@ static void errors_leave_out_the_first_and_the_time_without_a_source(void)
     TEST_ASSERT_TRUE(isnan(values[METRIC_LIFETIME_S]));
 }
 
+/* The source of 200 is there until instant 4; the estimate of its rate grows by 100 an instant. */
+static void growing_rate(const struct observer *observer, int i)
+{
+    const struct truth truth = {.time_s = i, .present = i < 5, .rate = i < 5 ? 200 : 0};
+    const struct mh_estimate estimate = {.rate = 100.0f * (float)(i + 1)};
+    observer->truth(observer->context, &truth);
+    observer->estimate(observer->context, i, 0, &estimate, &truth, &truth);
+}
+
+static void the_rate_is_judged_at_the_end_of_the_release(void)
+{
+    run_of(8, growing_rate);
+    NEAR(2.5, values[METRIC_RATE_RATIO]);
+    tearDown();
+    setUp();
+    run_of(12, three_metres_off);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_RATE_RATIO]));
+}
+
 static void metrics_have_names_of_their_own(void)
 {
     for (size_t i = 0; i < METRIC_COUNT; i++) {
@@ -394,6 +413,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(statistics_have_their_closed_forms);
     RUN_TEST(errors_leave_out_the_first_and_the_time_without_a_source);
+    RUN_TEST(the_rate_is_judged_at_the_end_of_the_release);
     RUN_TEST(metrics_have_names_of_their_own);
     RUN_TEST(energy_metrics_cover_states_and_causes);
     RUN_TEST(what_a_tracker_does_not_state_does_not_apply);
