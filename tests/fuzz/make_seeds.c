@@ -1,4 +1,4 @@
-/* make_seeds WIRE_FOLDER MOTE_FOLDER TRACK_FOLDER FUSION_FOLDER: good inputs of fuzz_wire.c, fuzz_mote.c, fuzz_track.c and fuzz_fusion.c, for the fuzzer
+/* make_seeds WIRE_FOLDER MOTE_FOLDER TRACK_FOLDER FUSION_FOLDER FIXED_FOLDER: good inputs of fuzz_wire.c, fuzz_mote.c, fuzz_track.c, fuzz_fusion.c and fuzz_fixed.c, for the fuzzer
  * to start from. */
 #include "motehound/centroid.h"
 #include "motehound/fusion.h"
@@ -233,9 +233,26 @@ static int save_fusion(const char *folder, const char *name, uint8_t rule, uint8
     return save(folder, name, input, length);
 }
 
+/* A mote that measures, hears samples and summaries, and what becomes of what it sends, while the time goes on. */
+static int save_fixed(const char *folder, const char *name, uint8_t choice)
+{
+    uint8_t input[600] = {choice};
+    uint32_t random = choice;
+    size_t length = 1;
+    for (uint8_t step = 0; length + 40 < sizeof input; step++) {
+        static const uint8_t kinds[] = {6, 2, 7, 8, 3, 10, 2, 9, 5, 10, 1, 8, 10, 3};
+        input[length++] = kinds[step % sizeof kinds];
+        for (int i = 0; i < (kinds[step % sizeof kinds] == 3 ? 14 : 8); i++) {
+            random = random * 1664525u + 1013904223u;
+            input[length++] = (uint8_t)(random >> 24);
+        }
+    }
+    return save(folder, name, input, length);
+}
+
 int main(int argc, char **argv)
 {
-    if (argc != 5) {
+    if (argc != 6) {
         return 2;
     }
     const struct mh_message beacon = {.kind = MH_MESSAGE_BEACON,
@@ -382,6 +399,11 @@ int main(int argc, char **argv)
         char name[20];
         snprintf(name, sizeof name, "rule%d", rule);
         failed = failed || save_fusion(argv[4], name, (uint8_t)rule, (uint8_t)(rule % 4));
+    }
+    for (int choice = 0; choice < 256; choice += 5) {
+        char name[20];
+        snprintf(name, sizeof name, "fixed%d", choice);
+        failed = failed || save_fixed(argv[5], name, (uint8_t)choice);
     }
     return failed ? 1 : 0;
 }
