@@ -1,11 +1,12 @@
 /* Tracks that are handed over: load() on any bytes.
  *
- * The first byte chooses the tracker, the second the length of the track that follows; then come instants, each with its distance in time and its
+ * The first byte chooses the tracker, the second the length of the track that follows, if it can be handed over; then come instants, each with its distance in time and its
  * measurements. Whatever is loaded: a refusal leaves no track, estimates are finite numbers with covariances that are one, and
  * what is saved again is taken again. */
 #include "fuzz.h"
 #include "motehound/centroid.h"
 #include "motehound/gas.h"
+#include "motehound/gas_wind.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
@@ -21,6 +22,7 @@ union state {
     struct mh_centroid_state centroid;
     struct mh_gas gas;
     struct mh_gas_gaussian gas_gaussian;
+    struct mh_gas_wind gas_wind;
 };
 
 struct input {
@@ -64,22 +66,28 @@ static mh_tick time_of(const uint8_t *track)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const struct mh_tracker *const trackers[] = {
-        &mh_tracker_range, &mh_tracker_range,     &mh_tracker_pftl,    &mh_tracker_msl,    &mh_tracker_centroid,
-        &mh_tracker_gas,   &mh_tracker_gas_small, &mh_tracker_gas_ekf, &mh_tracker_gas_ukf};
+        &mh_tracker_range, &mh_tracker_range,     &mh_tracker_pftl,    &mh_tracker_msl,     &mh_tracker_centroid,
+        &mh_tracker_gas,   &mh_tracker_gas_small, &mh_tracker_gas_ekf, &mh_tracker_gas_ukf, &mh_tracker_gas_wind};
     static union state state, other;
     struct mh_range_config range;
     struct mh_pftl_config pftl;
     struct mh_msl_config msl;
     struct mh_centroid_config centroid;
     struct mh_gas_config gas;
+    struct mh_gas_wind_config gas_wind;
     mh_range_config_default(&range);
     mh_pftl_config_default(&pftl);
     mh_msl_config_default(&msl);
     mh_centroid_config_default(&centroid);
     mh_gas_config_default(&gas);
+    mh_gas_wind_config_default(&gas_wind);
+    gas_wind.place_count = 3;
+    gas_wind.places[1].x_mm = 40000;
+    gas_wind.places[2].y_mm = 60000;
+    gas_wind.learn = 0;
     range.sensing_range_m = 50;
     range.tolerance_m = 5;
-    const void *const configs[] = {&range, &range, &pftl, &msl, &centroid, &gas, &gas, &gas, &gas};
+    const void *const configs[] = {&range, &range, &pftl, &msl, &centroid, &gas, &gas, &gas, &gas, &gas_wind};
     struct input input = {data, size};
     const uint8_t choice = byte(&input);
     const uint8_t which = choice % (sizeof trackers / sizeof trackers[0]);
@@ -100,7 +108,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memset(&state, 0, sizeof state);
     require(tracker->init(&state, configs[which], INTERVAL) == MH_OK);
     struct mh_estimate estimate;
-    if (tracker->load(&state, track, length) != MH_OK) {
+    if (tracker->load != NULL && tracker->load(&state, track, length) != MH_OK) {
         require(tracker->predict(&state, time_of(track), &estimate) == MH_NONE);
         require(tracker->save(&state, track, &length) == MH_NONE);
         return 0;
@@ -123,15 +131,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             set[k].node = k;
             set[k].place = mh_place_from_offset(&centre, off);
             set[k].time = now;
+            if (tracker == &mh_tracker_gas_wind && k < 2) { /* the first node has an anemometer */
+                set[k].node = 0;
+                set[k].target = k == 0 ? MH_TARGET_WIND_X : MH_TARGET_WIND_Y;
+            }
             set[k].value = ((mh_q20)byte(&input) - 20) * MH_Q20_ONE;
         }
         if (tracker->step(&state, now, set, count, &estimate) == MH_OK) {
             check(&estimate);
         }
-        if (what & 64) {
+        if (what & 64 && tracker->restart != NULL) {
             tracker->restart(&state);
         }
-        if (tracker->save(&state, track, &length) == MH_OK) {
+        if (tracker->save != NULL && tracker->save(&state, track, &length) == MH_OK) {
             require(length <= MH_TRACK_BYTES_MAX);
             require(tracker->init(&other, configs[which], INTERVAL) == MH_OK);
             require(tracker->load(&other, track, length) == MH_OK);

@@ -3,6 +3,7 @@
 #include "motehound/centroid.h"
 #include "motehound/fusion.h"
 #include "motehound/gas.h"
+#include "motehound/gas_wind.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
@@ -161,7 +162,7 @@ static int save_search(const char *folder, const char *name, uint8_t choice, uin
     return save(folder, name, input, length);
 }
 
-/* A track as `tracker` saves it after three instants with five ranges, then six instants of fuzz_track.c. */
+/* A track, if there is such a thing, as `tracker` saves it after three instants with five ranges, then six instants of fuzz_track.c. */
 static int save_saved(const char *folder, const char *name, uint8_t choice, const struct mh_tracker *tracker,
                       const void *config)
 {
@@ -172,11 +173,12 @@ static int save_saved(const char *folder, const char *name, uint8_t choice, cons
         struct mh_centroid_state centroid;
         struct mh_gas gas;
         struct mh_gas_gaussian gas_gaussian;
+        struct mh_gas_wind gas_wind;
     } state;
     uint8_t input[512] = {choice};
     size_t length = 0;
     enum mh_status status = tracker->init(&state, config, 2000);
-    for (int i = 1; i <= 3 && status == MH_OK; i++) {
+    for (int i = 1; i <= 3 && status == MH_OK && tracker->save != NULL; i++) {
         struct mh_measurement set[5];
         struct mh_estimate estimate;
         memset(set, 0, sizeof set);
@@ -191,7 +193,7 @@ static int save_saved(const char *folder, const char *name, uint8_t choice, cons
         }
         status = tracker->step(&state, (mh_tick)i * 2000, set, 5, &estimate);
     }
-    if (status != MH_OK || tracker->save(&state, input + 2, &length) != MH_OK) {
+    if (status != MH_OK || (tracker->save != NULL && tracker->save(&state, input + 2, &length) != MH_OK)) {
         return -1;
     }
     input[1] = (uint8_t)length;
@@ -379,11 +381,14 @@ int main(int argc, char **argv)
     struct mh_msl_config msl;
     struct mh_centroid_config centroid;
     struct mh_gas_config gas;
+    struct mh_gas_wind_config gas_wind;
     mh_range_config_default(&range);
     mh_pftl_config_default(&pftl);
     mh_msl_config_default(&msl);
     mh_centroid_config_default(&centroid);
     mh_gas_config_default(&gas);
+    mh_gas_wind_config_default(&gas_wind);
+    gas_wind.place_count = 1;
     range.sensing_range_m = 50;
     range.height_m = 0;
     failed = failed || save_saved(track, "range", 0, &mh_tracker_range, &range) ||
@@ -394,7 +399,8 @@ int main(int argc, char **argv)
              save_saved(track, "gas", 5, &mh_tracker_gas, &gas) ||
              save_saved(track, "gas_small", 6, &mh_tracker_gas_small, &gas) ||
              save_saved(track, "gas_ekf", 7, &mh_tracker_gas_ekf, &gas) ||
-             save_saved(track, "gas_ukf", 8, &mh_tracker_gas_ukf, &gas);
+             save_saved(track, "gas_ukf", 8, &mh_tracker_gas_ukf, &gas) ||
+             save_saved(track, "gas_wind", 9, &mh_tracker_gas_wind, &gas_wind);
     for (int rule = MH_FUSION_CI; rule < MH_FUSION_CENTRAL; rule++) {
         char name[20];
         snprintf(name, sizeof name, "rule%d", rule);
