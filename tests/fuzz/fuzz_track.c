@@ -110,7 +110,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct mh_estimate estimate;
     if (tracker->load != NULL && tracker->load(&state, track, length) != MH_OK) {
         require(tracker->predict(&state, time_of(track), &estimate) == MH_NONE);
-        require(tracker->save(&state, track, &length) == MH_NONE);
+        require(tracker->save != NULL && tracker->save(&state, track, &length) == MH_NONE);
         return 0;
     }
     mh_tick now = time_of(track);
