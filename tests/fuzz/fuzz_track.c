@@ -143,7 +143,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (what & 64 && tracker->restart != NULL) {
             tracker->restart(&state);
         }
-        if (tracker->save != NULL && tracker->save(&state, track, &length) == MH_OK) {
+        if (tracker->save != NULL && tracker->load != NULL && tracker->save(&state, track, &length) == MH_OK) {
             require(length <= MH_TRACK_BYTES_MAX);
             require(tracker->init(&other, configs[which], INTERVAL) == MH_OK);
             require(tracker->load(&other, track, length) == MH_OK);
