@@ -7,7 +7,7 @@
  *
  * - Members send each sample (report_t) to their head as soon as it is to be reported. The head closes an instant after the other (head.h); how late a sample may be the head's
  *   configuration and the tracker say.
- * - At each instant that is a whole number of report intervals, after it is closed, the head sends what its tracker summarises for it (a parcel of one or two hand_over_t: `track` is the cluster,
+ * - At each instant that is a whole number of report intervals, at once or up to a tenth of the interval after it is closed, the head sends what its tracker summarises for it (a parcel of one or two hand_over_t: `track` is the cluster,
  *   `generation` and `time_ms` the instant).
  * - `wait` after each whole number of fuse intervals the centre joins what has come for it, and the sink tells its owner. If it feeds back, that goes to the heads as summaries come.
  * - With `acknowledges` the sink tells a head of a summary that the centre has taken it (taken_t).
@@ -62,13 +62,14 @@ struct mh_fixed_config {
     mh_node_id sink;                  /* the mote with this identifier ... */
     struct mh_place sink_place;       /* ... and place */
     const struct mh_fixed_cluster *clusters;
-    uint8_t cluster_count;   /* 1 to MH_FIXED_CLUSTERS_MAX */
-    mh_tick report_interval; /* a whole number of the heads' intervals, 100 ticks to an hour. Nominal 1,000 */
-    mh_tick fuse_interval;   /* 100 ticks to an hour. Nominal 1,000 */
-    mh_tick wait;            /* 1 to fuse_interval. Nominal 500 */
-    uint8_t patience;        /* 2 to 100. Nominal 3 */
-    bool acknowledges;       /* the rule needs to know which summaries the centre has */
-    mh_tick hello_period;    /* 1,000 to 600,000. Nominal 10,000 */
+    uint8_t cluster_count; /* 1 to MH_FIXED_CLUSTERS_MAX */
+    mh_tick
+        report_interval; /* a whole number of the heads' intervals, at most ten, 100 ticks to an hour. Nominal 1,000 */
+    mh_tick fuse_interval; /* 100 ticks to an hour. Nominal 1,000 */
+    mh_tick wait;          /* 1 to fuse_interval. Nominal 500 */
+    uint8_t patience;      /* 2 to 100. Nominal 3 */
+    bool acknowledges;     /* the rule needs to know which summaries the centre has */
+    mh_tick hello_period;  /* 1,000 to 600,000. Nominal 10,000 */
 };
 
 enum mh_fixed_role { MH_FIXED_RELAY, MH_FIXED_MEMBER, MH_FIXED_HEAD, MH_FIXED_SINK };
@@ -78,6 +79,7 @@ enum mh_fixed_timer {
     MH_FIXED_HELLO,
     MH_FIXED_SAY,   /* head: that it leads */
     MH_FIXED_WATCH, /* member: the head has been silent for too long */
+    MH_FIXED_TELL,  /* head: the sink of its track */
     MH_FIXED_FUSE,  /* sink */
     MH_FIXED_TIMERS
 };
@@ -100,7 +102,7 @@ struct mh_fixed {
     bool heard;            /* ... as it has said */
     uint8_t track_length;  /* of its track: 0 if there is none */
     uint8_t track[MH_LEAD_BYTES];
-    mh_tick fused; /* sink: the time that is to be fused */
+    mh_tick told, fused; /* what a head is to tell the sink of, what that is to fuse */
     /* what comes in parts: at the sink of each cluster, at a head from the sink */
     struct mh_fixed_incoming {
         struct mh_parcel parcel;

@@ -313,10 +313,8 @@ static void sent(void *state, mh_tick now, enum mh_sent outcome)
 }
 
 static void (*const at[MH_FIXED_TIMERS])(struct mh_fixed *f) = {
-    [MH_FIXED_HELLO] = say_hello,
-    [MH_FIXED_SAY] = mh_fixed_say,
-    [MH_FIXED_WATCH] = mh_fixed_watch,
-    [MH_FIXED_FUSE] = mh_fixed_fuse,
+    [MH_FIXED_HELLO] = say_hello,    [MH_FIXED_SAY] = mh_fixed_say,   [MH_FIXED_WATCH] = mh_fixed_watch,
+    [MH_FIXED_TELL] = mh_fixed_tell, [MH_FIXED_FUSE] = mh_fixed_fuse,
 };
 
 static void timer(void *state, mh_tick now)

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#define LONGEST                                                                                                        \
-    ((int32_t)1 << 30) /* ticks: nobody leads for longer, as far as others are told, so that times can be compared */
+#define TELL_SPREAD 10             /* part of a report interval over which heads tell the sink of their tracks */
+#define LONGEST ((int32_t)1 << 30) /* ticks: that anybody says to have led, so that times can be compared */
 
 static const struct mh_fixed_cluster *own(const struct mh_fixed *f) { return &f->config->clusters[f->cluster]; }
 
@@ -170,13 +170,20 @@ void mh_fixed_hear_feedback(struct mh_fixed *f, mh_node_id from, const mh_hand_o
 
 void mh_fixed_closed(struct mh_fixed *f, mh_tick instant)
 {
-    uint8_t bytes[MH_SUMMARY_BYTES_MAX];
-    size_t length;
     const mh_tick interval = f->config->report_interval;
     if (f->role == MH_FIXED_HEAD && mh_tick_aligned(0, interval, instant) == instant &&
-        !mh_tick_before(instant, f->since + interval) &&
-        f->config->port->summarise(f->node->context, instant, bytes, &length) == MH_OK) {
+        !mh_tick_before(instant, f->since + interval)) {
+        f->told = instant; /* heads close an instant at the same time, but need not all send then */
+        mh_fixed_set(f, MH_FIXED_TELL, f->time + mh_spread(f->node->id, instant, interval / TELL_SPREAD));
+    }
+}
+
+void mh_fixed_tell(struct mh_fixed *f)
+{
+    uint8_t bytes[MH_SUMMARY_BYTES_MAX];
+    size_t length;
+    if (f->role == MH_FIXED_HEAD && f->config->port->summarise(f->node->context, f->told, bytes, &length) == MH_OK) {
         f->counters.summaries++;
-        mh_fixed_send_bytes(f, f->cluster, instant, bytes, length, f->config->sink, &f->config->sink_place);
+        mh_fixed_send_bytes(f, f->cluster, f->told, bytes, length, f->config->sink, &f->config->sink_place);
     }
 }

@@ -38,6 +38,7 @@ void mh_fixed_hear_report(struct mh_fixed *f, const mh_report_t *report);
 void mh_fixed_hear_taken(struct mh_fixed *f, const mh_taken_t *taken);
 void mh_fixed_hear_feedback(struct mh_fixed *f, mh_node_id from, const mh_hand_over_t *part);
 void mh_fixed_closed(struct mh_fixed *f, mh_tick instant);
+void mh_fixed_tell(struct mh_fixed *f);
 
 /* ---- fixed_sink.c ---- */
 
