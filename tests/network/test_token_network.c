@@ -2,6 +2,7 @@
  * a gas leak at (50, 200) m in a wind along +x, searched for from at least 400 m away (Zhang). Measured readings depend on the node and the instant only, so
  * that a walk without any network, by the tracker alone, has the same to work on. */
 #include "motehound/gas.h"
+#include "motehound/geographic.h"
 #include "motehound/mote.h"
 #include "motehound/spread.h"
 #include "motehound/token.h"
@@ -641,15 +642,42 @@ static void who_is_to_begin_is_dead(void)
 
 /* ---- two tokens ---- */
 
-/* Who has begun restarts, and begins again; the sink stops that search, whether the first is still on its way or over. */
+/* Who has begun restarts, after its neighbours have said their first hellos. */
+static void who_has_begun_does_not_begin_again(void)
+{
+    for (uint32_t seed = 1; seed <= 4; seed++) {
+        prepare(&mh_tracker_gas, LEVEL_M, 2800 + seed);
+        come_up();
+        run_until(65000);
+        come_up_mote(w->config.start);
+        run_until(330000);
+        TEST_ASSERT_TRUE(found_it());
+        TEST_ASSERT_EQUAL(0, counters().begun); /* with all else it has forgotten the first time */
+        TEST_ASSERT_EQUAL(0, counters().yielded);
+    }
+}
+
+static void have_begin(unsigned i)
+{
+    struct mh_message message = {.kind = MH_MESSAGE_TOKEN,
+                                 .as.token = {.sender = SINK, .track = SINK, .holder = (int32_t)MH_BROADCAST}};
+    uint8_t frame[MH_FRAME_MAX];
+    size_t length;
+    mh_geographic_address(&message, SINK, 77, i, &w->places[i]);
+    TEST_ASSERT_EQUAL(MH_OK, mh_wire_encode(mh_wire_all, &message, frame, &length));
+    TEST_ASSERT_EQUAL(MH_OK, mh_mote_frame(&w->motes[i].mote, w->now, frame, length));
+    TEST_ASSERT_EQUAL(MH_TOKEN_HEAD, w->motes[i].protocol.role);
+}
+
+/* Somebody begins a second time; the sink stops that search, whether the first is still on its way or over. */
 static void a_second_search_is_stopped(void)
 {
     for (uint32_t seed = 1; seed <= 6; seed++) {
         prepare(&mh_tracker_gas, LEVEL_M, 2600 + seed);
         const struct walk ideal = walk();
         come_up();
-        run_until(seed % 2 ? FIRST + 4 * T : FIRST + (ideal.count + 6) * T);
-        come_up_mote(w->config.start);
+        run_until(seed % 2 ? FIRST + 6 * T : FIRST + (ideal.count + 6) * T);
+        have_begin(w->config.start);
         run_until(w->now + 12 * T);
         TEST_ASSERT_TRUE(counters().yielded >= 1);
         TEST_ASSERT_TRUE(leading() <= 1);
@@ -687,6 +715,7 @@ int main(void)
     RUN_TEST(heads_may_go_on_dying);
     RUN_TEST(head_and_keeper_die);
     RUN_TEST(who_is_to_begin_is_dead);
+    RUN_TEST(who_has_begun_does_not_begin_again);
     RUN_TEST(a_second_search_is_stopped);
     RUN_TEST(the_sink_begins_the_search);
     port_exit(UNITY_END() > 0);

@@ -25,8 +25,9 @@
  *   - Both are lost, or the node that is to begin is dead, or does not know its neighbours: the sink, hearing nothing for `patience` instants, sends for
  *     whoever stands nearest to where the last head was, or to where the search was to begin, and that begins anew, MH_TOKEN_RESTARTS times at most.
  *     This needs the sink, and a way to it.
- *   - A predecessor takes a living head for dead, or a node begins twice, since it has restarted: there are two tokens until they come within reach of
- *     one node, or the sink hears of both.
+ *   - Who is to begin restarts: it does not begin again, if a neighbour's hello shows that that has been up for longer.
+ *   - A predecessor takes a living head for dead, or a node begins again all the same: there are two tokens until they come within reach of one node, or
+ *     the sink hears of both.
  *
  * Needs the network's time on all motes (mh_mote_config.clock), and does nothing before it is known. The radios listen all the time. The heads' configuration
  * (head.h) has the same interval and window as here, epoch 0, some tolerance, and own_first. The owner of the mote has to tell the fate of what it sends

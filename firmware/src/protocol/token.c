@@ -281,6 +281,9 @@ static void hear_of_neighbours(struct mh_token_node *t, const struct mh_message 
         if ((mh_node_id)hello->sender != t->config->sink) {
             mh_vicinity_hear(&t->vicinity, t->now, (mh_node_id)hello->sender, hello->x_mm, hello->y_mm);
         }
+        if ((uint16_t)hello->sequence >= HELLOS_AT_START) { /* this node has restarted, and may have begun before */
+            mh_token_clear(t, MH_TOKEN_BEGIN);
+        }
     } else if (heard->kind == MH_MESSAGE_VICINITY) {
         const mh_vicinity_t *list = &heard->as.vicinity;
         for (uint8_t i = 0; i < list->count; i++) {

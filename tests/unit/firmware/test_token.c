@@ -390,6 +390,21 @@ static void nobody_begins_a_search_that_goes_on(void)
     TEST_ASSERT_EQUAL(0, saw.leads);
 }
 
+static void who_restarts_does_not_begin_again(void)
+{
+    come_up(OTHER);
+    const struct mh_message as_new = {.kind = MH_MESSAGE_HELLO, .as.hello = {.sender = NEXT, .sequence = 4}};
+    hear(5000, &as_new);
+    pass(FIRST);
+    TEST_ASSERT_EQUAL(1, saw.leads);
+    come_up(OTHER);
+    hear_hello(5000, NEXT, 60000); /* which has said nine before */
+    pass(FIRST);
+    TEST_ASSERT_EQUAL(0, saw.leads);
+    hear_token(FIRST, MH_BROADCAST, 0, MH_SEARCH_GOES_ON); /* unless it is sent for */
+    TEST_ASSERT_EQUAL(1, saw.leads);
+}
+
 static void who_is_sent_for_begins(void)
 {
     pass(FIRST);
@@ -1070,6 +1085,7 @@ int main(void)
     RUN_TEST(who_hears_a_node_begin_anew_says_hello);
     RUN_TEST(who_is_to_begin_does);
     RUN_TEST(nobody_begins_a_search_that_goes_on);
+    RUN_TEST(who_restarts_does_not_begin_again);
     RUN_TEST(who_is_sent_for_begins);
     RUN_TEST(who_is_asked_answers_once);
     RUN_TEST(a_sample_taken_before_is_answered_too);
