@@ -49,7 +49,7 @@ struct mh_gas_config {
         area; /* where the source can be: the grid's; not empty. Places within 1000 km of the field's origin */
     struct mh_place prior;             /* where it is expected, ... */
     struct mh_vec2 prior_sd_m;         /* 0.1 to 1e5 */
-    mh_real prior_rate, prior_rate_sd; /* ... and how much it releases, 1e-9 to 1e9 and 0.01 to 100 times that */
+    mh_real prior_rate, prior_rate_sd; /* ... and how much it releases, 1e-9 to 1e9 and 1e-4 to 1e4 times that */
     mh_real calm_step_m; /* MH_ESTIMATE_CALM: the estimate moved less than this, 1e-3 to 1e5, nominal 5, ... */
     mh_real calm_sd_m;   /* ... and is as sure as this, the same range, nominal 10 */
     struct mh_ukf_weights

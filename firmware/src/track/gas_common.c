@@ -43,7 +43,7 @@ enum mh_status mh_gas_valid(const struct mh_gas_config *config, mh_tick interval
     const bool prior = mh_coordinate_valid(config->prior.x_mm) && mh_coordinate_valid(config->prior.y_mm) &&
                        mh_within(config->prior_sd_m.x, 0.1f, 1e5f) && mh_within(config->prior_sd_m.y, 0.1f, 1e5f) &&
                        mh_within(config->prior_rate, 1e-9f, 1e9f) &&
-                       mh_within(config->prior_rate_sd / config->prior_rate, 0.01f, 100.0f);
+                       mh_within(config->prior_rate_sd / config->prior_rate, 1e-4f, 1e4f);
     const bool calm = mh_within(config->calm_step_m, 1e-3f, 1e5f) && mh_within(config->calm_sd_m, 1e-3f, 1e5f);
     return interval >= 1 && interval <= 3600000u && air && sensors && prior && calm && region_valid(&config->area)
                ? MH_OK
@@ -102,7 +102,8 @@ void mh_gas_prior(const struct mh_gas_config *config, struct mh_gaussian *prior)
 
 void mh_gas_prior_of_log(const struct mh_gas_config *config, struct mh_gaussian *prior)
 {
-    const mh_real variance = mh_log(1.0f + mh_squared(config->prior_rate_sd / config->prior_rate));
+    const mh_real share = mh_squared(config->prior_rate_sd / config->prior_rate);
+    const mh_real variance = share < 1e-3f ? share : mh_log(1.0f + share);
     prior_of(config, mh_log(config->prior_rate) - 0.5f * variance, variance, prior);
 }
 

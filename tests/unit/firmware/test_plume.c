@@ -108,7 +108,7 @@ static void gradient_is_the_slope(void)
     static const mh_real spreads_m2[] = {0, 900};
     const mh_real h = 0.05f;
     for (int i = 0; i < 24; i++) {
-        const struct mh_plume plume = blowing(1.5f, (mh_real)(i / 2) * (MH_PI / 6));
+        const struct mh_plume plume = blowing(1.5f, (mh_real)i * (MH_PI / 12));
         const mh_real spread = spreads_m2[i % 2];
         const struct mh_vec2 sensor = {40, 25}, source = {20, 10};
         mh_real c;
