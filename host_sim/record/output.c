@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 /* Every file that a run may leave; summary.json, which says that the others are whole, last. */
-static const char *const result_files[] = {"runs.csv",      "track.csv",  "nodes.csv",
+static const char *const result_files[] = {"runs.csv",      "track.csv",  "local.csv",   "nodes.csv",
                                            "scenario.json", "events.lcm", "summary.json"};
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 

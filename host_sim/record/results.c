@@ -109,6 +109,32 @@ static void put_tracks(const struct results *results, const struct recorder *rec
     }
 }
 
+static int put_locals(struct results *results, const struct recorder *recorder, char *error, size_t error_size)
+{
+    if (recorder->local_count > 0 && results->local == NULL) {
+        results->local = output_create(&results->output, "local.csv", error, error_size);
+        if (results->local == NULL) {
+            return -1;
+        }
+        fputs("run,cluster,time_s,x_m,y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,head\n", results->local);
+    }
+    for (size_t i = 0; i < recorder->local_count; i++) {
+        const motehound_track_t *track = &recorder->locals[i].track;
+        const double none = (double)NAN;
+        fprintf(results->local, "%u,%ld", results->run_count, (long)recorder->locals[i].cluster);
+        put_number(results->local, track->time_s);
+        put_number(results->local, track->x_m);
+        put_number(results->local, track->y_m);
+        put_number(results->local, sqrt((track->cov_xx_m2 + track->cov_yy_m2) / 2));
+        put_number(results->local, track->true_known ? track->true_x_m : none);
+        put_number(results->local, track->true_known ? track->true_y_m : none);
+        put_number(results->local, track->vx_mps);
+        put_number(results->local, track->vy_mps);
+        fprintf(results->local, ",%lu\n", (unsigned long)(uint32_t)track->head);
+    }
+    return 0;
+}
+
 /* The first run's motes, in the format that network.file and a replay read. */
 static int put_nodes(const struct results *results, const struct recorder *recorder, char *error, size_t error_size)
 {
@@ -168,7 +194,8 @@ int results_add(struct results *results, uint64_t seed, const struct scenario *s
     if (!memory) {
         return fail(error, error_size, "run %u: no memory", results->run_count);
     }
-    if ((results->run_count == 0 && put_nodes(results, recorder, error, error_size) != 0) ||
+    if (put_locals(results, recorder, error, error_size) != 0 ||
+        (results->run_count == 0 && put_nodes(results, recorder, error, error_size) != 0) ||
         (results->log != NULL && take_log(results, error, error_size) != 0)) {
         return -1;
     }
@@ -242,7 +269,7 @@ static int put_json(struct results *results, const char *name, json_t *whole, ch
 
 int results_commit(struct results *results, const char *version, char *error, size_t error_size)
 {
-    const char *names[6] = {"runs.csv", "track.csv", "nodes.csv", "summary.json"};
+    const char *names[7] = {"runs.csv", "track.csv", "nodes.csv", "summary.json"};
     size_t count = 4;
     const bool logged = results->log != NULL;
     bool sound = put_json(results, "summary.json", summary(results, version), error, error_size) == 0 &&
@@ -251,6 +278,10 @@ int results_commit(struct results *results, const char *version, char *error, si
     if (sound && results->scenario != NULL) {
         names[count++] = "scenario.json";
         sound = put_json(results, "scenario.json", scenario_json(results->scenario), error, error_size) == 0;
+    }
+    if (sound && results->local != NULL) {
+        names[count++] = "local.csv";
+        sound = output_sync(results->local, "local.csv", error, error_size) == 0;
     }
     if (sound && logged) {
         names[count++] = "events.lcm";
@@ -270,6 +301,9 @@ void results_discard(struct results *results)
     }
     if (results->track != NULL) {
         fclose(results->track);
+    }
+    if (results->local != NULL) {
+        fclose(results->local);
     }
     if (results->log != NULL) {
         lcm_eventlog_destroy(results->log);

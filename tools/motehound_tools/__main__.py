@@ -1,4 +1,4 @@
-"""python -m motehound_tools report | sweep | results | zhou | metec | faults | picture | bound | export | view"""
+"""python -m motehound_tools report | sweep | results | zhou | xu | metec | faults | picture | bound | export | view"""
 
 from __future__ import annotations
 
@@ -42,6 +42,11 @@ def parser() -> argparse.ArgumentParser:
     zhou.add_argument("--out", type=Path, default=Path("out/zhou"), help="where the sweeps go; finished runs are kept")
     zhou.add_argument("--markdown", type=Path, default=Path("docs/zhou.md"), help="the page to write")
 
+    xu = commands.add_parser("xu", help="run the experiments xu_* and write the page about them")
+    xu.add_argument("--seeds", metavar="SEEDS", help="such as 0-9, instead of the experiments' own")
+    xu.add_argument("--out", type=Path, default=Path("out/xu"), help="where the sweeps go; finished runs are kept")
+    xu.add_argument("--markdown", type=Path, default=Path("docs/xu.md"), help="the page to write")
+
     metec = commands.add_parser("metec", help="replay the real leaks and write the page about them")
     metec.add_argument("data", type=Path, metavar="FOLDER_OF_THE_RECORDING")
     metec.add_argument("--out", type=Path, default=Path("out/metec"), help="where the recordings and replays go")
@@ -73,7 +78,7 @@ def parser() -> argparse.ArgumentParser:
     shown.add_argument("--bus", metavar="URL", help="such as udpm://239.255.76.67:7667?ttl=0")
     view.add_argument("--port", type=int, default=5006, help="0: any that is free (%(default)s)")
 
-    for one in (sweep, results, zhou, metec, faults, picture):
+    for one in (sweep, results, zhou, xu, metec, faults, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
     return top
 
@@ -103,6 +108,11 @@ def perform(arguments: argparse.Namespace) -> None:
         from . import zhou
 
         zhou.write(arguments.motehound, arguments.out, arguments.markdown, arguments.seeds)
+        print(arguments.markdown)
+    elif arguments.command == "xu":
+        from . import xu
+
+        xu.write(arguments.motehound, arguments.out, arguments.markdown, arguments.seeds)
         print(arguments.markdown)
     elif arguments.command == "metec":
         from . import command, metec

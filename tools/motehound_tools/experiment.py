@@ -61,18 +61,20 @@ class Part(BaseModel):
 
 
 class Quantity(Part):
-    """A metric as it is drawn."""
+    """A metric as it is drawn; of curves, what curves.py knows of a run over time."""
 
     metric: str
     name: str = ""
     scale: float = 1.0
+    pool: Literal["mean", "rms"] = "mean"  # over the seeds
 
 
 class Drawing(Part):
     """What the report draws of a panel. Axes that are neither `x` nor `lines` are averaged over."""
 
     title: str = ""
-    kind: Literal["lines", "bars"] = "lines"  # bars: one for each series, with every y as a part of it
+    # bars: one for each series, with every y as a part of it; curves: over the time of the runs
+    kind: Literal["lines", "bars", "curves"] = "lines"
     x: str = ""  # of lines; the first axis
     lines: str = ""  # an axis with a line for each of its values
     label: str = ""  # of the upright axis, or of the bars
@@ -141,6 +143,10 @@ def points(experiment: Experiment) -> Iterator[Point]:
                 yield Point(panel.title, series.name, settings, panel.seeds)
 
 
+def has_curves(experiment: Experiment) -> bool:
+    return any(drawing.kind == "curves" for panel in panels(experiment) for drawing in panel.draw)
+
+
 def keys(experiment: Experiment) -> list[str]:
     """Every key that differs between rows, in the order of the file."""
     found = [*experiment.grid, *(key for series in experiment.series for key in series.settings)]
@@ -200,6 +206,8 @@ def _check_names(experiment: Experiment, source: Source) -> None:
                     raise source.failure((*place, key), f"expected an axis of the grid ({known}), found '{axis}'")
             if drawing.kind == "lines" and not panel.grid:
                 raise source.failure(place, "expected a grid to draw lines over, or kind: bars")
+            if drawing.kind == "curves" and panel.grid:
+                raise source.failure(place, "expected no grid, because curves are drawn over time")
 
 
 def _settings(experiment: Experiment) -> Iterator[tuple[tuple[str | int, ...], str, str]]:

@@ -443,6 +443,11 @@ AXIS_NAMES = {
     "target.speed_mph": "speed, mph",
     "network.density": "density",
     "sensor.range_noise_m": "noise of a range, m",
+    "sensor.noise_correlation": "correlation of the noise",
+    "target.position_sd_m": "standard deviation of the start, m",
+    "fusion.report_s": "between reports, s",
+    "fusion.report_loss": "share of reports lost",
+    "clusters.shared": "nodes shared with the next cluster",
 }
 
 

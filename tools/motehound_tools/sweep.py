@@ -27,7 +27,7 @@ import pyarrow
 import pyarrow.csv
 import pyarrow.parquet
 
-from . import batch, command, experiment
+from . import batch, command, curves, experiment
 from .experiment import Experiment
 from .failure import Failure
 
@@ -44,7 +44,13 @@ def fingerprint(file: Path) -> str:
 
 
 def perform(
-    program: str, expected: str, scenario: str, scratch: str | None, settings: dict[str, str], seed: int
+    program: str,
+    expected: str,
+    scenario: str,
+    scratch: str | None,
+    settings: dict[str, str],
+    seed: int,
+    over_time: bool = False,
 ) -> dict[str, Any]:
     """One run, on any machine that has the program at this path or on its PATH: its record, or why there is none."""
     host = socket.gethostname()
@@ -62,8 +68,10 @@ def perform(
             return {CANNOT: f"{' '.join(f'{key}={value}' for key, value in settings.items())}, seed {seed}: {failure}"}
         with (out / "runs.csv").open(newline="", encoding="utf-8") as stream:
             (results,) = csv.DictReader(stream)
+        more = {"curves": curves.of(out)} if over_time else {}
     metrics = {name: float(text) if text else None for name, text in results.items() if name not in ("run", "seed")}
-    return {"seed": seed, "settings": settings, "host": host, "started": started, "ended": now(), "metrics": metrics}
+    told = {"seed": seed, "settings": settings, "host": host, "started": started, "ended": now(), "metrics": metrics}
+    return told | more
 
 
 def put(file: Path, write: Any) -> None:
@@ -195,6 +203,19 @@ def table(wanted: Experiment, records: dict[str, dict[str, Any]]) -> pyarrow.Tab
     return pyarrow.table(columns)
 
 
+def curves_table(wanted: Experiment, records: dict[str, dict[str, Any]]) -> pyarrow.Table:
+    """A row for each value over time: panel, series, seed, name, time, value. Of experiments that draw curves."""
+    rows = [
+        (point.panel, point.series, seed, name, *pair)
+        for point in experiment.points(wanted)
+        for seed in point.seeds
+        for name, pairs in records[identity(point.settings, seed)]["curves"].items()
+        for pair in pairs
+    ]
+    names = ("panel", "series", "seed", "curve", "time_s", "value")
+    return pyarrow.table(dict(zip(names, map(list, zip(*rows)))))
+
+
 def run(
     file: Path,
     out: Path | None = None,
@@ -226,10 +247,15 @@ def run(
             for point in experiment.points(wanted)
             for seed in point.seeds
         }
-        records = finish(out, needed, str(program), made_of["program"]["sha256"], scenario, jobs, scheduler)
+        over_time = experiment.has_curves(wanted)
+        what = (str(program), made_of["program"]["sha256"], scenario, over_time)
+        records = finish(out, needed, what, jobs, scheduler)
         made = table(wanted, records)
         put(out / "table.csv", lambda stream: pyarrow.csv.write_csv(made, stream))
         put(out / "table.parquet", lambda stream: pyarrow.parquet.write_table(made, stream))
+        if over_time:
+            over = curves_table(wanted, records)
+            put(out / "curves.parquet", lambda stream: pyarrow.parquet.write_table(over, stream))
         told = ("seed", "settings", "host", "started", "ended")
         manifest["runs"] = [{"id": name, **{key: records[name][key] for key in told}} for name in needed]
         manifest["ended"] = max(records[name]["ended"] for name in needed)
@@ -240,23 +266,22 @@ def run(
 def finish(
     out: Path,
     needed: dict[str, tuple[dict[str, str], int]],
-    program: str,
-    expected: str,
-    scenario: str,
+    what: tuple[str, str, str, bool],
     jobs: int | None,
     scheduler: str | None,
 ) -> dict[str, dict[str, Any]]:
-    """The records of all needed runs; those that are not in the folder are run, all settings with the first seed first."""
+    """The records of all needed runs of `what`: program, its fingerprint, scenario, and whether curves are wanted. Those that are not in the folder are run, all settings with the first seed first."""
     folder, scratch = out / "runs", out / "scratch"
     folder.mkdir(exist_ok=True)
     kept = {name: get_json(folder / f"{name}.json") for name in needed}
-    records = {name: record for name, record in kept.items() if record}
+    program, expected, scenario, over_time = what
+    records = {name: record for name, record in kept.items() if record and (not over_time or "curves" in record)}
     missing = sorted((name for name in needed if name not in records), key=lambda name: needed[name][1])
     if records and missing:
         print(f"{out}: {len(records)} of {len(needed)} runs are there", file=sys.stderr)
     if not missing:
         return records
-    for stale in ("table.csv", "table.parquet"):
+    for stale in ("table.csv", "table.parquet", "curves.parquet"):
         (out / stale).unlink(missing_ok=True)
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir(exist_ok=True)  # runs that a killed sweep left behind may still write there
@@ -264,7 +289,7 @@ def finish(
     function = Sent(perform) if scheduler else perform
     place = None if scheduler else str(scratch)
     with pool:
-        calls = {name: (program, expected, scenario, place, *needed[name]) for name in missing}
+        calls = {name: (program, expected, scenario, place, *needed[name], over_time) for name in missing}
         try:
             for name, record in batch.each(pool, function, calls, out.name):
                 if CANNOT in record:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import itertools
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow.parquet
@@ -29,6 +30,7 @@ class Table:
     experiment: Experiment
     version: str
     columns: dict[str, list[float | str | None]]
+    curves: dict[str, list[Any]] = field(default_factory=dict)  # of experiments that draw some
 
     @staticmethod
     def read(folder: Path) -> Table:
@@ -36,7 +38,9 @@ class Table:
             manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
             columns = pyarrow.parquet.read_table(folder / "table.parquet").to_pydict()
             experiment = Experiment.model_validate(manifest["experiment"])
-            return Table(folder, experiment, manifest["recipe"]["program"]["version"], columns)
+            over_time = folder / "curves.parquet"
+            curves = pyarrow.parquet.read_table(over_time).to_pydict() if over_time.exists() else {}
+            return Table(folder, experiment, manifest["recipe"]["program"]["version"], columns, curves)
         except (OSError, ValueError, KeyError) as error:
             raise Failure(f"{folder}: expected the manifest.json and table.parquet of a sweep: {error}") from None
 
@@ -60,6 +64,17 @@ class Table:
             if value is not None:
                 of_seed.setdefault(self.columns["seed"][row], []).append(float(value) * quantity.scale)
         return np.array([np.mean(values) for values in of_seed.values()])
+
+
+    def over_time(self, panel: Panel, series: str, quantity: Quantity) -> tuple[Array, Array]:
+        """Time, and the quantity's root mean square over the seeds at it."""
+        rows = zip(*(self.curves.get(name, []) for name in ("panel", "series", "curve", "time_s", "value")))
+        squares: dict[float, list[float]] = {}
+        for title, of_series, name, time, value in rows:
+            if (title, of_series, name) == (panel.title, series, quantity.metric):
+                squares.setdefault(round(time, 6), []).append((value * quantity.scale) ** 2)
+        time = np.array(sorted(squares))
+        return time, np.array([np.sqrt(np.mean(squares[t])) for t in time])
 
 
 def same(cell: float | str | None, value: str) -> bool:
@@ -89,8 +104,14 @@ def unit(key: str) -> str:
     return axis_name(key).partition(",")[2]
 
 
-def summarised(values: list[Array]) -> tuple[Array, Array]:
-    mean = np.array([np.mean(v) if len(v) else np.nan for v in values])
+def pooled(values: Array, pool: str) -> float:
+    if not len(values):
+        return float("nan")
+    return float(np.sqrt(np.mean(values**2)) if pool == "rms" else np.mean(values))
+
+
+def summarised(values: list[Array], pool: str) -> tuple[Array, Array]:
+    mean = np.array([pooled(v, pool) for v in values])
     sd = np.array([np.std(v, ddof=1) if len(v) > 1 else 0.0 for v in values])
     return mean, sd
 
@@ -112,10 +133,11 @@ def lines(table: Table, panel: Panel, drawing: Drawing) -> list[Line]:
             (quantity.name or quantity.metric) if len(drawing.y) > 1 else "",
         ]
         look = (v, s) if of else (s, q)
-        found.append(Line(", ".join(part for part in said if part), look, panel.grid[x], *summarised(points)))
+        name = ", ".join(part for part in said if part)
+        found.append(Line(name, look, panel.grid[x], *summarised(points, quantity.pool)))
     for index, bound in enumerate(drawing.bounds):
         points = [table.by_seed(table.rows(panel, **{x: at}), bound) for at in panel.grid[x]]
-        found.append(Line(bound.name or bound.metric, (-1, index), panel.grid[x], *summarised(points)))
+        found.append(Line(bound.name or bound.metric, (-1, index), panel.grid[x], *summarised(points, bound.pool)))
     return [line for line in found if np.isfinite(line.mean).any()]
 
 
@@ -124,7 +146,7 @@ def bars(table: Table, panel: Panel, drawing: Drawing) -> list[Line]:
     parts = []
     for index, quantity in enumerate(drawing.y):
         values = [table.by_seed(table.rows(panel, series=name), quantity) for name in names]
-        parts.append(Line(quantity.name or quantity.metric, (index, 0), names, *summarised(values)))
+        parts.append(Line(quantity.name or quantity.metric, (index, 0), names, *summarised(values, quantity.pool)))
     return [part for part in parts if np.isfinite(part.mean).any()]
 
 
@@ -184,6 +206,47 @@ def draw_bars(axes: Axes, parts: list[Line]) -> None:
         axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.19), ncols=2, columnspacing=1.4)
 
 
+def draw_curves(axes: Axes, table: Table, panel: Panel, drawing: Drawing) -> list[tuple[str, Array, Array]]:
+    """What is drawn: names, times and values."""
+    found = []
+    for (s, series), (q, quantity) in itertools.product(enumerate(panel.series), enumerate(drawing.y)):
+        time, value = table.over_time(panel, series.name, quantity)
+        said = [series.name if len(panel.series) > 1 else "", quantity.name if len(drawing.y) > 1 else ""]
+        name = ", ".join(part for part in said if part) or quantity.name or quantity.metric
+        colour, style = (s, q) if len(panel.series) > 1 else (q, 0)
+        look = {"color": COLOURS[colour % len(COLOURS)], "linestyle": STYLES[style % len(STYLES)]}
+        if len(time):
+            axes.plot(time, value, linewidth=1.6, label=name, **look)
+            found.append((name, time, value))
+    for index, bound in enumerate(drawing.bounds):
+        time, value = table.over_time(panel, panel.series[0].name, bound)
+        if len(time):
+            style = STYLES[1 + index % (len(STYLES) - 1)]
+            axes.plot(time, value, color=QUIET, linewidth=1.4, linestyle=style, label=bound.name, zorder=1)
+            found.append((bound.name, time, value))
+    if drawing.log:
+        plain_log(axes, "y")
+    else:
+        axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("time, s")
+    axes.set_ylabel(drawing.label)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.19), ncols=2, columnspacing=1.4)
+    return found
+
+
+def drawn_curves(table: Table, panel: Panel, drawing: Drawing) -> Drawn | None:
+    figure, axes = pyplot.subplots(figsize=(6.2, 3.7))
+    found = draw_curves(axes, table, panel, drawing)
+    if not found:
+        pyplot.close(figure)
+        return None
+    title = ": ".join(part for part in (panel.title, drawing.title) if part)
+    caption = f"Root mean square over {len(panel.seeds)} seeds."
+    times = found[0][1][:: max(1, len(found[0][1]) // 10)]
+    numbers = [[f"{t:g}", *(f"{np.interp(t, time, value):.4g}" for _, time, value in found)] for t in times]
+    return Drawn(Picture(title, svg_text(figure), caption), ["time, s", *(name for name, _, _ in found)], numbers)
+
+
 @dataclass(frozen=True)
 class Drawn:
     """A figure with its numbers: a head and rows of text."""
@@ -198,6 +261,8 @@ def number(mean: float, sd: float) -> str:
 
 
 def drawn(table: Table, panel: Panel, drawing: Drawing) -> Drawn | None:
+    if drawing.kind == "curves":
+        return drawn_curves(table, panel, drawing)
     is_lines = drawing.kind == "lines"
     x = drawing.x or next(iter(panel.grid), "") if is_lines else ""
     found = (lines if is_lines else bars)(table, panel, drawing)
@@ -212,7 +277,8 @@ def drawn(table: Table, panel: Panel, drawing: Drawing) -> Drawn | None:
         draw_bars(axes, found)
         axes.set_xlabel(drawing.label)
     averaged = [short_name(key) for key in panel.grid if key not in (x, drawing.lines)]
-    caption = f"Mean of {len(panel.seeds)} seeds"
+    pools = {quantity.pool for quantity in drawing.y}
+    caption = f"{'Root mean square over' if pools == {'rms'} else 'Mean of'} {len(panel.seeds)} seeds"
     if averaged:
         caption += f", and over every {', '.join(averaged[:-1]) + ' and ' if averaged[1:] else ''}{averaged[-1]}"
     if is_lines or len(found) == 1:

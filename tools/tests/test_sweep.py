@@ -295,7 +295,7 @@ def test_points(tmp_path: Path) -> None:
             ":8: panels[0].draw[0].x: expected an axis of the grid (sensor.interval_s",
         ),
         ("y: [{metric: position_rmse_m}]", "y: []", ":8: panels[0].draw[0].y: list should have at least 1 item"),
-        ("{x:", "{kind: pie, x:", ":8: panels[0].draw[0].kind: expected 'lines' or 'bars'"),
+        ("{x:", "{kind: pie, x:", ":8: panels[0].draw[0].kind: expected 'lines', 'bars' or 'curves'"),
     ],
 )
 def test_bad_experiments(tmp_path: Path, old: str, new: str, said: str) -> None:

@@ -195,6 +195,47 @@ static void keys_that_contradict_each_other_are_refused(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&scenario, "a.yaml", error, sizeof error), error);
 }
 
+static void fixed_clusters_have_limits(void)
+{
+    static const char *const sound[][2] = {
+        {"source.path", "white_acceleration"}, {"source.duration_s", "100"}, {"network.protocol", "fixed"},
+        {"network.layout", "rings"},           {"network.nodes", "18"},      {"network.ideal", "true"},
+        {"sensor.quantity", "range"},          {"sensor.interval_s", "0.5"}, {"tracker.name", "cv_ukf"}};
+    static const char *const cases[][2] = {{"network.layout", "uniform"},
+                                           {"network.nodes", "17"},
+                                           {"source.path", "arcs"},
+                                           {"sensor.quantity", "concentration"},
+                                           {"tracker.name", "range"},
+                                           {"network.protocol", "collection"},
+                                           {"clusters.nodes", "3, 4, 5, 6.5"},
+                                           {"clusters.range_variance_m2", "1, 2, 3"},
+                                           {"clusters.nodes", "2, 2, 2, 2, 2, 2, 2, 2, 2"},
+                                           {"clusters.shared", "4"},
+                                           {"fusion.report_s", "0.75"},
+                                           {"fusion.report_s", "0.25"},
+                                           {"sensor.noisy_detection", "true"},
+                                           {"sensor.loss", "0.1"}};
+    static const char *const on_air[][2] = {
+        {"fusion.rule", "central"}, {"fusion.report_loss", "0.1"}, {"clusters.shared", "1"}};
+    for (size_t k = 0; k < sizeof sound / sizeof sound[0]; k++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, sound[k][0], sound[k][1], error, sizeof error), error);
+    }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&scenario, "a.yaml", error, sizeof error), error);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0] + sizeof on_air / sizeof on_air[0]; i++) {
+        const bool ideal = i < sizeof cases / sizeof cases[0];
+        const char *const *set = ideal ? cases[i] : on_air[i - sizeof cases / sizeof cases[0]];
+        tearDown();
+        setUp();
+        for (size_t k = 0; k < sizeof sound / sizeof sound[0]; k++) {
+            (void)scenario_set(&scenario, sound[k][0], sound[k][1], error, sizeof error);
+        }
+        scenario.network.ideal = ideal;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, set[0], set[1], error, sizeof error), error);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(-1, scenario_check(&scenario, "a.yaml", error, sizeof error), set[0]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "expected"), error);
+    }
+}
+
 /* What the ideal network or the walk of the published experiments cannot do. */
 static void a_ranged_target_in_clusters_has_limits(void)
 {
@@ -273,6 +314,7 @@ int main(void)
     RUN_TEST(set_refuses_what_a_file_may_not_hold_and_changes_nothing_then);
     RUN_TEST(keys_that_contradict_each_other_are_refused);
     RUN_TEST(a_ranged_target_in_clusters_has_limits);
+    RUN_TEST(fixed_clusters_have_limits);
     RUN_TEST(the_scenarios_that_come_along_are_sound);
     RUN_TEST(a_deployment_file_is_found_beside_its_scenario);
     port_exit(UNITY_END() > 0);
