@@ -128,13 +128,38 @@ static void on_air(void *context, sim_time time, uint32_t sender, uint32_t desti
     }
 }
 
+static bool follows_search(const struct network *network)
+{
+    return network->config.observer->cluster && network->config.roster->kit.protocol.protocol == &mh_protocol_token;
+}
+
+/* A frame has come to mote `head`. */
+static void take_answer(struct network *network, uint32_t head, const uint8_t *bytes, size_t length)
+{
+    struct mh_message message;
+    if (network->answer_count == NETWORK_ANSWERS || mh_wire_decode(mh_wire_all, bytes, length, &message) != MH_OK) {
+        return;
+    }
+    const struct network_answer answer = {head, (mh_node_id)message.as.answer.sender};
+    for (size_t i = 0; i < network->answer_count; i++) {
+        if (network->answers[i].head == head && network->answers[i].node == answer.node) {
+            return;
+        }
+    }
+    network->answers[network->answer_count++] = answer;
+}
+
 static void heard(void *context, sim_time time, const uint8_t *bytes, size_t length, const uint32_t *receivers,
                   uint32_t count)
 {
     struct network *network = context;
-    const enum energy_cause cause = account_cause(frame_kind(&network->kinds, bytes, length));
+    const enum mh_message_kind kind = frame_kind(&network->kinds, bytes, length);
+    const enum energy_cause cause = account_cause(kind);
     for (uint32_t i = 0; i < count && network->account.open; i++) {
         account_frame(&network->account, receivers[i], time, cause);
+    }
+    for (uint32_t i = 0; i < count && kind == MH_MESSAGE_ANSWER && follows_search(network); i++) {
+        take_answer(network, receivers[i], bytes, length);
     }
     const uint8_t *kept_bytes = keep(network, bytes, length);
     const uint32_t *kept_receivers = keep(network, receivers, count * sizeof *receivers);
@@ -187,6 +212,24 @@ static void take_clock_error(struct network *network, uint32_t mote, double erro
     }
 }
 
+/* The head of a search has an estimate of its own sample and of the answers that have come to it. */
+static void tell_heard(struct network *network, uint32_t head, double time_s)
+{
+    const struct observer *observer = network->config.observer;
+    mh_node_id members[NETWORK_ANSWERS];
+    size_t count = 0, left = 0;
+    for (size_t i = 0; i < network->answer_count; i++) {
+        if (network->answers[i].head == head) {
+            members[count++] = network->answers[i].node;
+        } else {
+            network->answers[left++] = network->answers[i];
+        }
+    }
+    network->answer_count = left;
+    observer->cluster(observer->context, time_s, 0, roster_id(network->config.roster, head), members, count,
+                      network->heads++ > 0);
+}
+
 static void act(struct network *network, const struct host_action *action)
 {
     const struct network_config *config = &network->config;
@@ -195,6 +238,9 @@ static void act(struct network *network, const struct host_action *action)
         transmit(network, action);
         break;
     case HOST_REPORT:
+        if (follows_search(network) && roster_computes(config->roster, action->mote)) {
+            tell_heard(network, action->mote, seconds(network, (int64_t)action->time));
+        }
         if (roster_computes(config->roster, action->mote)) {
             account_step(&network->account, action->mote, action->time, action->as.estimate.measurements);
         }

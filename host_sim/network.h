@@ -35,7 +35,7 @@ struct network_config {
     void (*report)(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate);
 };
 
-enum { NETWORK_FORMS = 8 };
+enum { NETWORK_FORMS = 8, NETWORK_ANSWERS = 256 };
 
 struct network {
     struct network_config config;
@@ -56,6 +56,12 @@ struct network {
     struct frame_kinds kinds;
     mh_form_t formed[NETWORK_FORMS]; /* the clusters told last, the n-th of all in place n modulo their number */
     uint64_t forms;
+    struct network_answer {
+        uint32_t head; /* a mote */
+        mh_node_id node;
+    } answers[NETWORK_ANSWERS]; /* in a search, those that have come to a head that has not reported since */
+    size_t answer_count;
+    uint64_t heads; /* of searches, told */
     struct account account;
     double *clock_error_s; /* of each mote, NaN where it does not know the time; NULL if all clocks are ideal */
     struct clock_errors clock_errors;

@@ -1,6 +1,7 @@
 #include "roster.h"
 
 #include "radio/radio.h"
+#include "world/campaign.h"
 #include "world/sensor.h"
 
 #include <math.h>
@@ -89,7 +90,9 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         kit->head.lateness = kit->tracker.config.cv.lag;
     }
     if (kit->protocol.in_turns) {
-        kit->head.window = kit->protocol.config.cluster.window;
+        const bool walks = kit->protocol.protocol == &mh_protocol_token;
+        kit->head.window = walks ? kit->protocol.config.token.window : kit->protocol.config.cluster.window;
+        kit->head.own_first = walks;
         kit->head.tolerance = kit->head.interval / 4; /* who is asked samples when he hears it */
     } else if (radio_config_of(scenario, scenario->radio.range_m).profile.contention) {
         kit->sensor.report_spread = kit->head.window / 4 * 3; /* the rest is for the way */
@@ -121,7 +124,23 @@ void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place p
     } else if (kit->protocol.fixed) {
         kit->protocol.config.fixed.sink = sink;
         kit->protocol.config.fixed.sink_place = place;
+    } else if (kit->protocol.protocol == &mh_protocol_token) {
+        kit->protocol.config.token.sink = sink;
+        kit->protocol.config.token.sink_place = place;
     }
+}
+
+/* Of a search. */
+static int tell_start(struct roster *roster, const struct scenario *scenario)
+{
+    uint32_t start;
+    if (campaign_start(scenario, roster->seed, &roster->deployment, &start)) {
+        return -1;
+    }
+    const struct recorded_node *node = &roster->deployment.nodes[start];
+    roster->kit.protocol.config.token.start = node->id;
+    roster->kit.protocol.config.token.start_place = place_from_metres(node->x_m, node->y_m, node->z_m);
+    return 0;
 }
 
 int roster_complete(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size)
@@ -138,6 +157,10 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     roster->sink_x_m = field.sink_x_m;
     roster->sink_y_m = field.sink_y_m;
     mote_kit_tell_sink(&roster->kit, roster->sink_id, place_from_metres(field.sink_x_m, field.sink_y_m, 0));
+    if (roster->kit.protocol.protocol == &mh_protocol_token && tell_start(roster, scenario)) {
+        snprintf(error, error_size, "out of memory");
+        return -1;
+    }
     return 0;
 }
 

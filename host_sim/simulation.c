@@ -298,8 +298,8 @@ int simulation_run_on(const struct host_provider *hosts, const struct scenario *
     int result = bring_up(&run, hosts, scenario, seed, error, error_size);
     if (result == 0) {
         result = network_run(&run.network, run.end, stop, error, error_size);
-        *counters =
-            (struct simulation_counters){.samples = run.next, .clusters.present = run.roster.kit.protocol.in_turns};
+        *counters = (struct simulation_counters){
+            .samples = run.next, .clusters.present = run.roster.kit.protocol.protocol == &mh_protocol_cluster};
     }
     if (result == 0) {
         result = network_count(&run.network, counters, error, error_size);

@@ -66,6 +66,12 @@
     X(REPORTS_PER_SAMPLE, "reports_per_sample", per_sample(c, of_clusters(c, c->clusters.total.reports)), "positions sent to the sink, by sampling instant") \
     X(ASKED_PER_SAMPLE, "asked_per_sample", per_sample(c, of_clusters(c, c->clusters.total.asked)), "nodes that a head asked to sample, by sampling instant") \
     X(ANSWERED_PER_SAMPLE, "answered_per_sample", per_sample(c, of_clusters(c, c->clusters.total.answered)), "of these such that measured the target") \
+    X(TOKENS_HANDED, "tokens_handed", c->protocol.searches.handed, "searches: tokens that the next head took")                                      \
+    X(TOKENS_REFUSED, "tokens_refused", c->protocol.searches.refused, "times that a node did not take one")                                        \
+    X(SEARCHES_RESUMED, "searches_resumed", c->protocol.searches.resumed, "times that a head fell silent, and the one before led again")           \
+    X(SEARCHES_SENT_FOR, "searches_sent_for", c->protocol.searches.sent_for, "times that the sink heard of no search and had a node begin")        \
+    X(HEADS_YIELDED, "heads_yielded", c->protocol.searches.yielded, "searches: times that a head gave way to another")                             \
+    X(SEARCHES_CORRUPT, "searches_corrupt", c->protocol.searches.corrupt, "searches: messages with absurd content, not used")                      \
     X(SUMMARIES, "summaries", c->protocol.fixed.summaries, "fixed clusters: summaries of their tracks that heads sent to the sink")              \
     X(SUMMARIES_TAKEN, "summaries_taken", c->protocol.fixed.taken, "of these that the fusion centre took")                                       \
     X(SUMMARIES_REPEATED, "summaries_repeated", c->protocol.fixed.repeated, "of these that it had already: the acknowledgement was lost")        \

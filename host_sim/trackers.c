@@ -394,6 +394,23 @@ static void set_up_fixed(struct protocol_choice *choice, const struct scenario *
     config->hello_period = ticks(scenario->protocol.hello_s);
 }
 
+static void set_up_token(struct protocol_choice *choice, const struct scenario *scenario)
+{
+    const struct mh_place nowhere = {0, 0, 0};
+    struct mh_token_config *config = &choice->config.token;
+    choice->protocol = &mh_protocol_token;
+    choice->in_turns = true;
+    mh_token_config_default(config, MH_BROADCAST - 1, &nowhere);
+    config->range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);
+    config->interval = ticks(scenario->sensor.interval_s);
+    const mh_tick half = config->interval / 2;
+    config->window = scenario->tracker.window_s > 0 ? ticks(scenario->tracker.window_s)
+                     : config->window < half        ? config->window
+                                                    : half;
+    config->calm = (uint8_t)scenario->protocol.calm;
+    config->heads_max = (uint8_t)scenario->protocol.heads_max;
+}
+
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
                     size_t error_size)
 {
@@ -414,11 +431,16 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         set_up_fixed(choice, scenario);
         return 0;
     }
+    if (strcmp(name, mh_protocol_token.name) == 0) {
+        set_up_token(choice, scenario);
+        return 0;
+    }
     if (strcmp(name, chatter_protocol.name) == 0) {
         choice->protocol = &chatter_protocol;
         choice->config.chatter.interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S);
         return 0;
     }
-    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct, cluster, fixed or chatter", name);
+    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct, cluster, fixed, token or chatter",
+             name);
     return -1;
 }

@@ -19,6 +19,7 @@
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/range.h"
+#include "motehound/token.h"
 #include "scenario/recording.h"
 #include "scenario/scenario.h"
 #include "world/chatter.h"
@@ -63,6 +64,7 @@ struct protocol_choice {
         struct mh_direct_config direct;
         struct mh_cluster_config cluster; /* but for the sink, which the roster knows */
         struct mh_fixed_config fixed;     /* likewise */
+        struct mh_token_config token;     /* likewise, and but for the node that begins */
         struct chatter_config chatter;
     } config;
     struct mh_fixed_cluster clusters[SCENARIO_NUMBERS_MAX]; /* of `fixed` */

@@ -28,7 +28,7 @@ struct run {
     uint32_t head;
     struct truth truth;
     uint64_t heads, calm; /* so far, and of these in succession */
-    struct mh_cluster_counters counters;
+    uint32_t samples;
 };
 
 static void take_sample(struct run *run, uint32_t node)
@@ -60,9 +60,7 @@ static void hear(struct run *run)
         }
     }
     qsort(run->heard + 1, run->count - 1, sizeof *run->heard, by_node);
-    run->counters.asked += (uint32_t)run->count;
-    run->counters.answered += (uint32_t)run->count;
-    run->counters.formed += run->heads > 0;
+    run->samples += (uint32_t)run->count;
     for (size_t i = 1; i < run->count; i++) {
         run->members[i - 1] = run->heard[i].node;
     }
@@ -250,8 +248,7 @@ int ideal_token_run(const struct scenario *scenario, uint64_t seed, const struct
     if (result == 0) {
         const double none = (double)NAN;
         *counters = (struct simulation_counters){.samples = run.heads,
-                                                 .head.measurements = run.counters.answered,
-                                                 .clusters = {.present = true, .total = run.counters},
+                                                 .head.measurements = run.samples,
                                                  .energy = energy_total_unknown(),
                                                  .clock_error_median_ms = none,
                                                  .clock_error_p99_ms = none,

@@ -233,6 +233,24 @@ static int check_fixed(const struct scenario *scenario, const char *name, char *
     return 0;
 }
 
+/* What motes that search cannot do. */
+static int check_search(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const double interval_s = scenario->sensor.interval_s, window_s = scenario->tracker.window_s;
+    if (interval_s < 0.5) {
+        return fail(error, error_size,
+                    "%s: sensor.interval_s: expected at least 0.5 for network.protocol token, found %g", name,
+                    interval_s);
+    }
+    if (window_s > 0 && (window_s < 0.1 || window_s > interval_s / 2)) {
+        return fail(error, error_size,
+                    "%s: tracker.window_s: expected 0, or 0.1 to half of sensor.interval_s for network.protocol token, "
+                    "found %g",
+                    name, window_s);
+    }
+    return 0;
+}
+
 /* Clusters follow a target that is ranged, a token walks to a source of gas, and the ideal network has nothing but them. */
 static int check_clusters(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
@@ -258,7 +276,9 @@ static int check_clusters(const struct scenario *scenario, const char *name, cha
                     name);
     }
     if (!scenario->network.ideal) {
-        return clusters ? check_rhythm(scenario, name, error, error_size) : 0;
+        return clusters ? check_rhythm(scenario, name, error, error_size)
+               : walks  ? check_search(scenario, name, error, error_size)
+                        : 0;
     }
     struct faults faults;
     faults_make(&faults, scenario, 0);
