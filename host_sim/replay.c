@@ -111,7 +111,7 @@ static void read(struct replay *replay, const struct recorded_reading *reading)
 {
     const uint32_t mote = replay->motes[reading->node];
     network_reading(&replay->network, mote, q20(reading->value), reading->target);
-    if (replay->recording->candidate_count > 0) {
+    if (replay->roster.kit.tracker.tracker == &mh_tracker_gas_wind) {
         network_reading(&replay->network, mote, q20(reading->wind_x_mps), MH_TARGET_WIND_X);
         network_reading(&replay->network, mote, q20(reading->wind_y_mps), MH_TARGET_WIND_Y);
     }
@@ -199,11 +199,8 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
     };
     struct mote_kit *kit = &roster->kit;
     roster->seed = seed;
-    const int chosen =
-        recording->candidate_count > 0
-            ? tracker_choose_candidates(scenario, recording, interval_s, &kit->tracker, error, error_size)
-            : tracker_choose(scenario, NULL, &kit->tracker, error, error_size);
-    if (chosen != 0 || protocol_choose("direct", scenario, &kit->protocol, error, error_size) ||
+    if (tracker_choose_of_recording(scenario, recording, interval_s, &kit->tracker, error, error_size) ||
+        protocol_choose("direct", scenario, &kit->protocol, error, error_size) ||
         find_motes(replay, error, error_size)) {
         return -1;
     }

@@ -272,27 +272,56 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
     return -1;
 }
 
-int tracker_choose_candidates(const struct scenario *scenario, const struct recording *recording, double interval_s,
-                              struct tracker_choice *choice, char *error, size_t error_size)
+/* Where the leak can be, as the recording says, or else the middles of the cells of a grid. Returns the sd of the leak about its place. */
+static double set_places(struct mh_gas_wind_config *config, const struct recording *recording, double place_sd_m)
 {
-    if (strcmp(scenario->tracker.name, mh_tracker_gas_wind.name) != 0) {
-        snprintf(error, error_size, "tracker.name: `%s`, expected gas where there are candidates",
-                 scenario->tracker.name);
-        return -1;
-    }
-    if (!recording->has_wind) {
-        snprintf(error, error_size,
-                 "the readings have no columns wind_speed_mps and wind_toward_rad, which candidates need");
-        return -1;
-    }
-    const double unit_ppm = scenario->sensor.unit_ppm, hours = interval_s / 3600;
-    struct mh_gas_wind_config *config = &choice->config.gas_wind;
-    *choice = (struct tracker_choice){.tracker = &mh_tracker_gas_wind, .measures = QUANTITY_GAS};
-    mh_gas_wind_config_default(config);
     config->place_count = (uint16_t)recording->candidate_count;
     for (uint16_t i = 0; i < config->place_count; i++) {
         config->places[i] = place_from_metres(recording->candidates[i].x_m, recording->candidates[i].y_m, 0);
     }
+    if (config->place_count > 0) {
+        return place_sd_m;
+    }
+    const int side = (int)sqrt(MH_LEAK_PLACES_MAX);
+    const struct recorded_node *nodes = recording->nodes;
+    double x_min = nodes[0].x_m, x_max = x_min, y_min = nodes[0].y_m, y_max = y_min;
+    for (size_t i = 1; i < recording->node_count; i++) {
+        x_min = fmin(x_min, nodes[i].x_m);
+        x_max = fmax(x_max, nodes[i].x_m);
+        y_min = fmin(y_min, nodes[i].y_m);
+        y_max = fmax(y_max, nodes[i].y_m);
+    }
+    const double width_m = (x_max - x_min) / side, height_m = (y_max - y_min) / side;
+    for (int i = 0; i < side * side; i++) {
+        const double x_m = x_min + (i % side + 0.5) * width_m, y_m = y_min + (i / side + 0.5) * height_m;
+        config->places[config->place_count++] = place_from_metres(x_m, y_m, 0);
+    }
+    return fmax(place_sd_m, sqrt((width_m * width_m + height_m * height_m) / 24)); /* even over a cell */
+}
+
+int tracker_choose_of_recording(const struct scenario *scenario, const struct recording *recording, double interval_s,
+                                struct tracker_choice *choice, char *error, size_t error_size)
+{
+    const bool is_gas = strcmp(scenario->tracker.name, mh_tracker_gas_wind.name) == 0;
+    if (recording->candidate_count > 0 && !is_gas) {
+        snprintf(error, error_size, "tracker.name: `%s`, expected gas where there are candidates",
+                 scenario->tracker.name);
+        return -1;
+    }
+    if (recording->candidate_count > 0 && !recording->has_wind) {
+        snprintf(error, error_size,
+                 "the readings have no columns wind_speed_mps and wind_toward_rad, which candidates need");
+        return -1;
+    }
+    if (!is_gas || !recording->has_wind) {
+        return tracker_choose(scenario, NULL, choice, error, error_size);
+    }
+    const double unit_ppm = scenario->sensor.unit_ppm, hours = interval_s / 3600;
+    struct mh_gas_wind_config *config = &choice->config.gas_wind;
+    choice->tracker = &mh_tracker_gas_wind;
+    choice->measures = QUANTITY_GAS;
+    mh_gas_wind_config_default(config);
+    config->place_sd_m = (mh_real)fmin(set_places(config, recording, scenario->tracker.place_sd_m), 1000);
     config->unit = (mh_real)unit_ppm;
     config->mixing_m = (mh_real)scenario->tracker.mixing_m;
     config->direction_sd_rad = (mh_real)scenario->tracker.wind_sd_rad;
@@ -301,7 +330,6 @@ int tracker_choose_candidates(const struct scenario *scenario, const struct reco
     config->learn = ticks(scenario->tracker.learn_s);
     config->memory = ticks(scenario->tracker.memory_s);
     config->correlation = (mh_real)fmax(scenario->tracker.correlation_s / interval_s, 1);
-    config->place_sd_m = (mh_real)scenario->tracker.place_sd_m;
     return 0;
 }
 

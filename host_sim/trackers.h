@@ -79,10 +79,11 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
 /* The fusion centre that scenario->fusion names. */
 void centre_choose(const struct scenario *scenario, struct centre_choice *choice);
 
-/* The tracker `gas` of a recording whose leak can only be at the candidates and whose winds are measured, with readings each interval_s. Returns as
- * tracker_choose. */
-int tracker_choose_candidates(const struct scenario *scenario, const struct recording *recording, double interval_s,
-                              struct tracker_choice *choice, char *error, size_t error_size);
+/* The tracker that scenario->tracker names, for a recording with readings each interval_s. Where the winds are measured `gas` looks for the leak with them:
+ * among the candidates, or else on a grid over the rectangle in which the nodes stand. Returns as tracker_choose, or -1 too where there are candidates and
+ * the tracker is another or has no winds. */
+int tracker_choose_of_recording(const struct scenario *scenario, const struct recording *recording, double interval_s,
+                                struct tracker_choice *choice, char *error, size_t error_size);
 
 /* Its random numbers, if it has any, come from `seed`. */
 void tracker_seed(struct tracker_choice *choice, uint32_t seed);

@@ -108,6 +108,8 @@ leak=("$MOTEHOUND" replay --nodes nodes.csv --readings readings.csv --set sensor
 accepted "${leak[@]}" --tracker gas --candidates places.csv --truth truth.csv
 grep -q '^leak at x 5.0 m, y 0.0 m (place 4), releases .*; true: x 5.0 m, y 0.0 m, 100 mL/s' out.txt || complain "no leak: $(cat out.txt)"
 grep -q '"rate_ratio"' leaked/summary.json || complain "no rate_ratio"
+accepted "${leak[@]}" --tracker gas # on a grid of 64 places 1.25 m apart
+grep -Eq '^leak at x [4-6][.0-9]* m, y [01][.0-9]* m, releases' out.txt || complain "no leak on the grid: $(cat out.txt)"
 refused '^tracker.name: .luo., expected gas where there are candidates' "${leak[@]}" --tracker luo --candidates places.csv
 printf 'place,x_m,y_m\n4,5,0\n4,5,10\n' >places.csv
 refused '^places.csv:3: place: expected each once, found 4 again' "${leak[@]}" --tracker gas --candidates places.csv

@@ -46,6 +46,8 @@ class Release:
     found: int  # 0: nothing
     ratio: float  # of the rate to the true one; NaN where nothing was found
     right_share: float  # of the minutes of the release
+    error_m: float  # of the place at its end
+    sd_m: float  # of the place, as stated: of x and y together
 
     @property
     def right(self) -> bool:
@@ -58,9 +60,11 @@ def candidates(folder: Path) -> Array:
     return np.stack([table["place"], table["x_m"], table["y_m"]], axis=-1)
 
 
-def replay(program: Path, recording: Path, out: Path, settings: tuple[tuple[str, str], ...] = ()) -> None:
+def replay(
+    program: Path, recording: Path, out: Path, settings: tuple[tuple[str, str], ...] = (), on_grid: bool = False
+) -> None:
     call = [str(program), "replay", "--scenario", str(SCENARIO), "--out", str(out)]
-    for what in ("nodes", "readings", "truth", "candidates"):
+    for what in ("nodes", "readings", "truth", *(() if on_grid else ("candidates",))):
         call += [f"--{what}", str(recording / f"{what}.csv")]
     for key, value in settings:
         call += ["--set", f"{key}={value}"]
@@ -73,12 +77,13 @@ def replay(program: Path, recording: Path, out: Path, settings: tuple[tuple[str,
 def read(row: dict[str, str], recording: Path, out: Path) -> Release:
     """What became of the release that is `row` of releases.csv."""
     places, place = candidates(recording), int(row["place"])
-    track = read_table(out / "track.csv", ("time_s", "x_m", "y_m", "true_x_m", "rate", "true_rate"))
+    track = read_table(out / "track.csv", ("time_s", "x_m", "y_m", "sd_m", "true_x_m", "true_y_m", "rate", "true_rate"))
     known = np.isfinite(track["true_x_m"])
     minutes = read_table(recording / "truth.csv", ("time_s",))["time_s"]
     expected = (minutes[-1] - minutes[0]) / 60.0 + 1.0
     off = np.hypot(track["x_m"][:, None] - places[:, 1], track["y_m"][:, None] - places[:, 2])
     found = places[np.argmin(off, axis=1), 0].astype(int)
+    error = np.hypot(track["x_m"] - track["true_x_m"], track["y_m"] - track["true_y_m"])
     last = np.flatnonzero(known)[-1:]
     return Release(
         row["release"],
@@ -90,10 +95,14 @@ def read(row: dict[str, str], recording: Path, out: Path) -> Release:
         int(found[last[0]]) if len(last) else 0,
         float(track["rate"][last[0]] / track["true_rate"][last[0]]) if len(last) else float("nan"),
         float(np.sum(found[known] == place) / expected),
+        float(error[last[0]]) if len(last) else float("nan"),
+        float(np.sqrt(2.0) * track["sd_m"][last[0]]) if len(last) else float("nan"),
     )
 
 
-def replay_all(program: Path, recordings: Path, out: Path, settings: tuple[tuple[str, str], ...] = ()) -> list[Release]:
+def replay_all(
+    program: Path, recordings: Path, out: Path, settings: tuple[tuple[str, str], ...] = (), on_grid: bool = False
+) -> list[Release]:
     try:
         with (recordings / "releases.csv").open(newline="", encoding="utf-8") as stream:
             rows = list(csv.DictReader(stream))
@@ -102,7 +111,7 @@ def replay_all(program: Path, recordings: Path, out: Path, settings: tuple[tuple
     found = []
     for row in rows:
         recording = recordings / row["release"]
-        replay(program, recording, out, settings)
+        replay(program, recording, out, settings, on_grid)
         found.append(read(row, recording, out))
     return found
 
@@ -185,7 +194,7 @@ def picture(releases: list[Release], recording: Path) -> str:
     return figures.svg_text(figure)
 
 
-def page(releases: list[Release], variants: list[list[str]], checks: list[list[str]]) -> str:
+def page(releases: list[Release], on_grid: list[Release], variants: list[list[str]], checks: list[list[str]]) -> str:
     all_ratios, large = ratios(releases), ratios(releases, LARGE_KGPH)
     rows = [
         [
@@ -215,6 +224,11 @@ def page(releases: list[Release], variants: list[list[str]], checks: list[list[s
         large_band=" to ".join(f"{value:+.0f} %" for value in 100.0 * (np.quantile(large, (0.05, 0.95)) - 1.0)),
         large_inside=int(np.sum((large > 0.51) & (large < 1.79))),
         minutes=f"{100 * np.mean([release.right_share for release in releases]):.0f}",
+        grid_error=f"{np.median([release.error_m for release in on_grid]):.0f}",
+        grid_worst=f"{max(release.error_m for release in on_grid):.0f}",
+        grid_sd=f"{np.median([release.sd_m for release in on_grid]):.0f}",
+        grid_right=right(on_grid),
+        grid_median=f"{np.median(ratios(on_grid)):.2f}",
         releases=markdown(rows),
         variants=markdown(variants),
         checks=markdown(checks),
@@ -229,6 +243,7 @@ def write(program: Path, data: Path, out: Path, file: Path) -> None:
     if converted.returncode:
         raise Failure(converted.stderr.strip())
     releases = replay_all(program, recordings, out / "replay")
+    on_grid = replay_all(program, recordings, out / "variant", on_grid=True)
     variants = []
     for key, value in VARIANTS:
         other = replay_all(program, recordings, out / "variant", ((key, value),))
@@ -239,4 +254,4 @@ def write(program: Path, data: Path, out: Path, file: Path) -> None:
     images = file.parent / "images"
     images.mkdir(parents=True, exist_ok=True)
     (images / "metec.svg").write_text(picture(releases, recordings / releases[0].name), encoding="utf-8")
-    file.write_text(page(releases, variants, cross_checks(np.array(by_mixing))), encoding="utf-8")
+    file.write_text(page(releases, on_grid, variants, cross_checks(np.array(by_mixing))), encoding="utf-8")

@@ -40,6 +40,7 @@ def test_the_answer_is_the_last_of_the_release(recording: Path) -> None:
     assert release.right and release.ratio == 0.25
     assert release.rate_kgph == pytest.approx(1.0, rel=1e-3)
     assert release.right_share == pytest.approx(8 / 11)
+    assert release.error_m == 1.0 and release.sd_m == pytest.approx(3.0 * np.sqrt(2.0))
 
 
 def test_a_release_without_an_answer_is_not_right(recording: Path) -> None:
@@ -60,12 +61,13 @@ def test_mixing_chosen_on_the_others() -> None:
 
 def test_page_has_no_hole(recording: Path) -> None:
     releases = [
-        metec.Release(str(i), "2022-05-09 17:49", 2.0, 1 + i % 2, ("Tank", "Shed")[i % 2], 0.5 + i, 1, 0.8 + 0.1 * i, 0.9)
+        metec.Release(str(i), "2022-05-09 17:49", 2.0, 1 + i % 2, ("Tank", "Shed")[i % 2], 0.5 + i, 1, 0.8 + 0.1 * i, 0.9, 2.0 * i, 3.0)
         for i in range(6)
     ]
-    page = metec.page(releases, [["`a.b` 1", "3", "1.00"]], metec.cross_checks(np.ones((len(metec.MIXING), 6))))
+    page = metec.page(releases, releases, [["`a.b` 1", "3", "1.00"]], metec.cross_checks(np.ones((len(metec.MIXING), 6))))
     assert "**3 of 6 releases are put at the right group**" in page and "nan" not in page
     assert "| 2 | 2022-05-09 17:49 | 2.0 | Shed | 1.50 | **Tank** | 1.35 | 0.90 | 90 % |" in page
+    assert "wrong by 5 m in the\nmedian of the releases and by 10 m at worst" in page
     assert metec.picture(releases, recording).startswith("<svg")
 
 
