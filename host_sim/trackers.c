@@ -292,9 +292,11 @@ static double set_places(struct mh_gas_wind_config *config, const struct recordi
         y_max = fmax(y_max, nodes[i].y_m);
     }
     const double width_m = (x_max - x_min) / side, height_m = (y_max - y_min) / side;
-    for (int i = 0; i < side * side; i++) {
-        const double x_m = x_min + (i % side + 0.5) * width_m, y_m = y_min + (i / side + 0.5) * height_m;
-        config->places[config->place_count++] = place_from_metres(x_m, y_m, 0);
+    for (int i = 0; i < side; i++) {
+        for (int j = 0; j < side; j++) {
+            config->places[config->place_count++] =
+                place_from_metres(x_min + (i + 0.5) * width_m, y_min + (j + 0.5) * height_m, 0);
+        }
     }
     return fmax(place_sd_m, sqrt((width_m * width_m + height_m * height_m) / 24)); /* even over a cell */
 }
