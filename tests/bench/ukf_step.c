@@ -1,10 +1,11 @@
-/* One step of a nonlinear filter: a target at nearly constant velocity among four anchors, 4 states, 4 ranges, predict and update. The two updates
- * of the UKF and the EKF are functions of their own, so that an image holds what its workload needs. bench_ukf_setup() and
+/* One step of a nonlinear filter: a target at nearly constant velocity among four anchors, 4 states, 4 ranges, predict and update. Each filter is
+ * a function of its own, so that an image holds what its workload needs. bench_ukf_setup() and
  * bench_ukf_prepare() are not part of the step. */
 #include "ukf_step.h"
 
 #include "motehound/ekf.h"
 #include "motehound/geometry.h"
+#include "motehound/iterated_ekf.h"
 #include "motehound/ukf.h"
 
 static struct mh_gaussian bench_state;
@@ -88,6 +89,15 @@ void bench_ekf_step(void)
     told = mh_gaussian_predict(&bench_state, F, Q);
     if (told == MH_OK) {
         told = mh_ekf_update(&bench_state, &observations);
+    }
+}
+
+void bench_iterated_ekf_step(void)
+{
+    static const struct mh_iterated_ekf_config config = {20, 0.01f, 1e-4f};
+    told = mh_gaussian_predict(&bench_state, F, Q);
+    if (told == MH_OK) {
+        told = mh_iterated_ekf_update(&bench_state, &config, 0, &observations, 0);
     }
 }
 

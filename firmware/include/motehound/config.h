@@ -78,7 +78,7 @@
 #define MH_SUMMARY_BYTES_MAX 97
 
 /* States of a struct mh_gaussian, 4 (n + n (n + 1) / 2) bytes whatever part of it is used; and measured numbers that an update takes at
- * once (stacked), which cost 2 n^2 bytes of stack. */
+ * once (stacked), which cost a UKF 2 n^2 + 8 n MH_STATES_MAX + 14 n bytes of stack. */
 #ifndef MH_STATES_MAX
 #ifdef __AVR__
 #define MH_STATES_MAX 4

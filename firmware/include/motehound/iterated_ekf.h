@@ -12,7 +12,7 @@
  * Of several minima it finds the one downhill of the start; who fears others starts from several places and compares the costs.
  *
  * Each iteration evaluates every model once, with its gradient: `iterations` (at most) times `count`, n^2 / 2 for the change to y, and n roots,
- * n divisions and 2 n^2 multiplications to rotate it. Stack, N = MH_STATES_MAX: 4 (2 N^2 + 12 N) bytes and registers, besides the model's own. */
+ * n divisions and 2 n^2 multiplications to rotate it. Stack, N = MH_STATES_MAX: 14 N^2 + 34 N bytes and registers, besides the model's own. */
 #ifndef MOTEHOUND_ITERATED_EKF_H
 #define MOTEHOUND_ITERATED_EKF_H
 
@@ -23,7 +23,8 @@ struct mh_iterated_ekf_config {
     uint8_t iterations; /* at most, tries that do not lower f included; 1 to 255. 20 to 30 are plenty */
     mh_real
         damping; /* at first, a share of the diagonal: 0.01. Times 0.1 (to 1e-9) after a step that did not raise f, times 10 after one that would */
-    mh_real settled; /* ends when a step lowers f by less than this share of 1 + f: 1e-6 */
+    mh_real settled; /* ends when a step changes f by less than this share of 1 + f: 1e-4 is a hundredth of a standard
+                      * deviation, 1e-6 about the rounding of f */
 };
 
 /* gaussian: the prior, then the posterior. From `start` (n states; NULL: from the prior's mean). `*cost` = f at the minimum, unless NULL. That it has run out of iterations is no

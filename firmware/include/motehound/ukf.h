@@ -18,8 +18,8 @@
  * 1.2e-38 or NaN), MH_ERR_NOT_FINITE (an input, what a model says at a sigma point, or the result), MH_ERR_SINGULAR (P is not positive definite), and
  * whatever the model returns.
  *
- * Stack, besides the model's own: 4 (N^2 + 7 N) bytes and registers in a sequential update, N = MH_STATES_MAX; 4 (3 N^2 + 7 N) in a
- * prediction; a stacked update takes 2 S^2 + 4 N S + 16 S more, S = MH_STACKED_MAX. */
+ * Stack, besides the model's own: 4 N^2 + 24 N bytes and registers in a sequential update, N = MH_STATES_MAX; 6 N^2 + 38 N in a
+ * prediction; a stacked update takes 2 S^2 + 8 N S + 14 S more, S = MH_STACKED_MAX. */
 #ifndef MOTEHOUND_UKF_H
 #define MOTEHOUND_UKF_H
 
@@ -42,7 +42,7 @@ enum mh_status mh_ukf_predict(struct mh_gaussian *gaussian, const struct mh_ukf_
                               const struct mh_transition *transition, const mh_real *Q);
 
 /* The elements one after the other, with new sigma points for each (Zhang, Eqs. (13)-(20)). `count` may be 0 to 65535. 2 n + 1 evaluations of the
- * model an element. */
+ * model an element, and 5 n^2 / 2 + 14 n multiplications, n roots and 2 n divisions. */
 enum mh_status mh_ukf_update(struct mh_gaussian *gaussian, const struct mh_ukf_weights *weights,
                              const struct mh_observations *observations);
 
