@@ -543,6 +543,27 @@ static void two_heads_after_the_other_are_replaced(void)
     TEST_ASSERT_EQUAL(first_of(3) + 2, head);
 }
 
+/* Its radio acknowledges the samples of the others all the while, and that of the first member those of its own. */
+static void a_head_that_is_not_the_first_member_restarts(void)
+{
+    unsigned head = MOTES;
+    come_up(MH_FUSION_CI);
+    run_until(20000);
+    w->motes[first_of(2)].dead = true;
+    run_until(30000);
+    start(first_of(2));
+    run_until(40300);
+    TEST_ASSERT_EQUAL(1, heads_of(2, &head));
+    TEST_ASSERT_EQUAL(first_of(2) + 1, head);
+    start(head);
+    run_until(44000);
+    TEST_ASSERT_EQUAL(1, heads_of(2, &head));
+    run_until(101000);
+    TEST_ASSERT_EQUAL(1, heads_of(2, &head));
+    TEST_ASSERT_EQUAL(90, w->fused);
+    TEST_ASSERT_TRUE(rmse_m() < 1.5 * ideal_rmse_m());
+}
+
 static void a_sink_that_restarts_goes_on(void)
 {
     for (int r = 0; r < RULES; r++) {
@@ -593,6 +614,7 @@ int main(void)
     RUN_TEST(lost_acknowledgements_do_no_harm);
     RUN_TEST(a_head_that_dies_is_replaced);
     RUN_TEST(two_heads_after_the_other_are_replaced);
+    RUN_TEST(a_head_that_is_not_the_first_member_restarts);
     RUN_TEST(a_sink_that_restarts_goes_on);
     RUN_TEST(forged_summaries_are_refused_and_counted);
     port_exit(UNITY_END() > 0);

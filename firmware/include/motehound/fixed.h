@@ -11,12 +11,13 @@
  *   `generation` and `time_ms` the instant).
  * - `wait` after each whole number of fuse intervals the centre joins what has come for it, and the sink tells its owner. If it feeds back, that goes to the heads as summaries come.
  * - With `acknowledges` the sink tells a head of a summary that the centre has taken it (taken_t).
- * - The head says that it is there (lead_t), and where it has the target, as far as its tracker saves that in MH_LEAD_BYTES, once a report interval; its radio's acknowledgement of a sample says so too. Before anything is heard the first member is taken for
+ * - The head says that it is there (lead_t), and where it has the target, as far as its tracker saves that in MH_LEAD_BYTES, once a report interval; its radio's acknowledgement of a sample stands for that, four times `patience` intervals long. Before anything is heard the first member is taken for
  *   the head; it leads at once.
  *
  * What goes wrong:
  *   - The head falls silent: a member that has heard nothing of it for `patience` report intervals, and one more for each member before it, leads, and goes on with the track
  *     that the head has said last, or begins anew if it has said none. What was sent to the head meanwhile is lost.
+ *   - The head restarts: it leads again when a member sends it a sample, or if another is faster, follows that, as all do.
  *   - Two heads hear of each other: the one that has led longer goes on, of two equal ones the lower identifier. So a first member that restarts leads until it hears the head; it
  *     sends no summary in its first report interval.
  *   - A summary is lost: the centre does without it, as its rule has it. If only its acknowledgement is, the centre refuses the next one, which counts from before (MH_ERR_REPEATED),
@@ -99,7 +100,8 @@ struct mh_fixed {
     uint8_t cluster, rank; /* of a member: its cluster, and its number in that */
     uint8_t head;          /* the member that leads ... */
     mh_tick since;         /* ... since then, ... */
-    bool heard;            /* ... as it has said */
+    bool heard;            /* ... as it has said, ... */
+    mh_tick said;          /* ... the last time then */
     uint8_t track_length;  /* of its track: 0 if there is none */
     uint8_t track[MH_LEAD_BYTES];
     mh_tick told, fused; /* what a head is to tell the sink of, what that is to fuse */

@@ -58,6 +58,7 @@ struct mh_fixed_counters {
     uint32_t led;         /* times that a node began to lead ... */
     uint32_t taken_over;  /* ... of these because the head had fallen silent */
     uint32_t yielded;     /* times that a head gave way to another */
+    uint32_t misdirected; /* samples that came to who leads no more */
     uint32_t summaries;   /* sent by heads */
     uint32_t taken;       /* summaries that the centre has taken */
     uint32_t repeated;    /* ... that it had, as far as it can tell: the acknowledgement was lost */

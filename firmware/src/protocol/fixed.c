@@ -385,6 +385,7 @@ static void count(const void *state, struct mh_protocol_counters *counters)
     sum->led += more->led;
     sum->taken_over += more->taken_over;
     sum->yielded += more->yielded;
+    sum->misdirected += more->misdirected;
     sum->summaries += more->summaries;
     sum->taken += more->taken;
     sum->repeated += more->repeated;

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#define BELIEVED 4                 /* patiences that acknowledged samples stand for what the head has not said */
 #define TELL_SPREAD 10             /* part of a report interval over which heads tell the sink of their tracks */
 #define LONGEST ((int32_t)1 << 30) /* ticks: that anybody says to have led, so that times can be compared */
 
@@ -19,11 +20,12 @@ static void wait_for_head(struct mh_fixed *f)
     mh_fixed_set(f, MH_FIXED_WATCH, f->time + (f->config->patience + before(f)) * f->config->report_interval);
 }
 
-/* The head has not been heard for so long that another that says it leads is believed. */
+static mh_tick silence(const struct mh_fixed *f) { return f->time - f->said; }
+
+/* The head has not said that it leads for so long that another that says so is believed. */
 static bool is_silent(const struct mh_fixed *f)
 {
-    const mh_tick left = (before(f) + 1) * f->config->report_interval;
-    return !f->heard || !mh_tick_before(f->time + left, f->due[MH_FIXED_WATCH]);
+    return !f->heard || silence(f) >= (f->config->patience - 1u) * f->config->report_interval;
 }
 
 static void follow(struct mh_fixed *f, uint8_t head, const mh_lead_t *said)
@@ -32,6 +34,7 @@ static void follow(struct mh_fixed *f, uint8_t head, const mh_lead_t *said)
     f->head = head;
     f->since = (mh_tick)said->since_ms;
     f->heard = true;
+    f->said = f->time;
     f->track_length = said->length;
     memcpy(f->track, said->data, MH_LEAD_BYTES);
     mh_fixed_clear(f, MH_FIXED_SAY);
@@ -62,6 +65,7 @@ void mh_fixed_begin_member(struct mh_fixed *f)
     f->role = MH_FIXED_MEMBER;
     f->head = 0;
     f->heard = false;
+    f->said = f->time;
     f->track_length = 0;
     if (f->rank > 0 || !lead(f)) {
         wait_for_head(f);
@@ -125,7 +129,8 @@ void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said)
 
 void mh_fixed_report_taken(struct mh_fixed *f, mh_node_id by)
 {
-    if (f->role == MH_FIXED_MEMBER && by == mh_fixed_head(f)->id) {
+    if (f->role == MH_FIXED_MEMBER && by == mh_fixed_head(f)->id &&
+        silence(f) < BELIEVED * f->config->patience * f->config->report_interval) {
         wait_for_head(f);
     }
 }
@@ -133,11 +138,13 @@ void mh_fixed_report_taken(struct mh_fixed *f, mh_node_id by)
 void mh_fixed_hear_report(struct mh_fixed *f, const mh_report_t *report)
 {
     struct mh_measurement measurement;
-    if (f->role != MH_FIXED_HEAD) {
-        return; /* this node led before */
-    }
-    if (mh_fixed_member_of(own(f), (mh_node_id)report->origin) == MH_FIXED_NOBODY) {
+    if (f->role == MH_FIXED_RELAY || mh_fixed_member_of(own(f), (mh_node_id)report->origin) == MH_FIXED_NOBODY) {
         f->counters.refused++;
+        return;
+    }
+    /* who takes this node for the head has heard it lead: if it knows of no other it has restarted */
+    if (f->role != MH_FIXED_HEAD && (f->heard || !lead(f))) {
+        f->counters.misdirected++;
         return;
     }
     mh_report_to_measurement(report, &measurement);

@@ -331,18 +331,69 @@ static void a_member_that_hears_its_head_does_not_lead(void)
     TEST_ASSERT_EQUAL(MH_FIXED_HEAD, state.role);
 }
 
+static void sample(mh_tick now, enum mh_sent outcome)
+{
+    publish(now);
+    fixed->sent(&state, now, outcome);
+}
+
 static void a_head_that_acknowledges_samples_is_alive(void)
 {
     come_up(12, 32000, 0);
     for (mh_tick now = 500; now < 20 * T; now += 2 * T) {
         run(now);
-        publish(now);
-        fixed->sent(&state, now, MH_SENT_OK);
+        sample(now, MH_SENT_OK);
+        if (now == 8500) {
+            hear_lead(now, 11, 0, 0);
+        }
     }
     TEST_ASSERT_EQUAL(0, saw.led);
-    publish(19 * T);
-    fixed->sent(&state, 19 * T, MH_SENT_NO_ACK);
+    sample(19 * T, MH_SENT_NO_ACK);
     TEST_ASSERT_EQUAL_UINT32(18500 + 3 * T, state.due[MH_FIXED_WATCH]);
+}
+
+static void a_head_that_never_says_so_is_none_however_much_it_acknowledges(void)
+{
+    come_up(12, 32000, 0);
+    for (mh_tick now = 500; now < 30 * T && saw.led == 0; now += T) {
+        sample(now, MH_SENT_OK);
+        run(now + T);
+    }
+    TEST_ASSERT_EQUAL(1, saw.led);
+}
+
+static void who_says_that_it_leads_is_believed_rather_than_who_acknowledges(void)
+{
+    come_up(12, 32000, 0);
+    hear_lead(500, 11, 0, 0);
+    for (mh_tick now = 1000; now < 5 * T; now += T) {
+        run(now);
+        sample(now, MH_SENT_OK);
+    }
+    hear_lead(5 * T, 13, 4 * T, 0);
+    TEST_ASSERT_EQUAL(2, state.head);
+}
+
+static void hear_sample(mh_tick now, mh_node_id origin)
+{
+    struct mh_message message = {.kind = MH_MESSAGE_REPORT, .as.report = {.origin = (int32_t)origin}};
+    hear(now, &message, origin, node.id);
+}
+
+static void a_head_that_has_restarted_leads_when_it_is_taken_for_the_head(void)
+{
+    come_up(12, 32000, 0);
+    hear_sample(T, 99);
+    TEST_ASSERT_EQUAL(0, saw.led);
+    TEST_ASSERT_EQUAL_UINT32(1, state.counters.refused);
+    hear_sample(T, 13);
+    TEST_ASSERT_EQUAL(1, saw.led);
+    TEST_ASSERT_EQUAL(1, saw.delivered);
+    hear_lead(2 * T, 11, 0, 0);
+    hear_sample(2 * T, 13); /* knows nothing of that yet */
+    TEST_ASSERT_EQUAL(1, saw.led);
+    TEST_ASSERT_EQUAL(1, saw.delivered);
+    TEST_ASSERT_EQUAL_UINT32(1, state.counters.misdirected);
 }
 
 static void who_takes_over_goes_on_with_the_track(void)
@@ -484,10 +535,6 @@ static void a_head_takes_the_reports_of_its_members(void)
     hear(103, &report, 21, 11); /* of another cluster */
     TEST_ASSERT_EQUAL(1, saw.delivered);
     TEST_ASSERT_EQUAL_UINT32(1, state.counters.refused);
-    come_up(12, 32000, 0);
-    report.as.report.origin = 13;
-    hear(100, &report, 13, 12); /* does not lead */
-    TEST_ASSERT_EQUAL(0, saw.delivered);
 }
 
 /* ---- summaries ---- */
@@ -701,6 +748,9 @@ int main(void)
     RUN_TEST(the_others_wait_one_after_the_other);
     RUN_TEST(a_member_that_hears_its_head_does_not_lead);
     RUN_TEST(a_head_that_acknowledges_samples_is_alive);
+    RUN_TEST(a_head_that_never_says_so_is_none_however_much_it_acknowledges);
+    RUN_TEST(who_says_that_it_leads_is_believed_rather_than_who_acknowledges);
+    RUN_TEST(a_head_that_has_restarted_leads_when_it_is_taken_for_the_head);
     RUN_TEST(who_takes_over_goes_on_with_the_track);
     RUN_TEST(of_two_heads_the_one_that_has_led_longer_goes_on);
     RUN_TEST(who_cannot_lead_tries_again);
