@@ -14,7 +14,7 @@
  * last one that was acknowledged.
  *
  * fuse() fails with MH_NONE (no cluster has ever been heard; not with increments) or MH_ERR_TIME (not after the last, with increments not after config.start_time). Estimates: position and velocity with the covariance of all
- * four; `measurements` = summaries that were new, COASTED if none. What cannot be fused (an increment that takes information away; numbers beyond mh_real) is left out and counted.
+ * four; `measurements` = summaries that were new, COASTED if none. What cannot be fused (an increment that takes information away, or leads to an absurd state; numbers beyond mh_real) is left out and counted.
  *
  * Cost: docs/costs.md. Several targets need a centre each. */
 #ifndef MOTEHOUND_FUSION_CENTRE_H

@@ -20,6 +20,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* A state farther from the origin, faster, or less sure in these units than this is absurd, and refused wherever it comes from: soon it would be beyond mh_real. */
+#define MH_SUMMARY_FARTHEST_M 1e7f
+#define MH_SUMMARY_FASTEST_MPS 1e5f
+
 enum mh_summary_kind { MH_SUMMARY_PLAIN = 1, MH_SUMMARY_SPLIT, MH_SUMMARY_INCREMENT, MH_SUMMARY_FUSED };
 
 enum { MH_SUMMARY_STATES = 4 };
@@ -36,10 +40,13 @@ struct mh_summary {
     uint16_t clusters; /* FUSED: bit c is set where the increment of cluster c, of the same time, is in it */
 };
 
+/* Whether a state, finite and positive definite, is not absurd. */
+bool mh_summary_sane(const struct mh_gaussian *state);
+
 /* -> bytes[0 .. MH_SUMMARY_BYTES_MAX). Returns the length. The summary must be one that mh_summary_read takes. */
 size_t mh_summary_write(const struct mh_summary *summary, uint8_t *bytes);
 
-/* And back; `summary` is untouched after an error. Errors: MH_ERR_CORRUPT (kind, length, a number that is not finite, a covariance that is not positive definite. Of an increment only that its
+/* And back; `summary` is untouched after an error. Errors: MH_ERR_CORRUPT (kind, length, a number that is not finite, a covariance that is not positive definite, a state that is absurd. Of an increment only that its
  * numbers are finite can be known here). */
 enum mh_status mh_summary_read(struct mh_summary *summary, const uint8_t *bytes, size_t length);
 

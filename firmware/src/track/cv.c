@@ -416,7 +416,8 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
         return MH_ERR_CORRUPT;
     }
     const mh_tick time = mh_get_u32(&at);
-    if (mh_tick_before(time, cv->config.start) || mh_gaussian_read(&saved, MH_CV_STATES, at) != MH_OK) {
+    if (mh_tick_before(time, cv->config.start) || mh_gaussian_read(&saved, MH_CV_STATES, at) != MH_OK ||
+        !mh_summary_sane(&saved)) {
         return MH_ERR_CORRUPT;
     }
     begin_with(cv, time, &saved);
@@ -569,8 +570,9 @@ static enum mh_status correct(update_function update, struct mh_cv *cv, mh_tick 
         return MH_ERR_TIME;
     }
     struct mh_gaussian corrected = summary.of.plain;
-    if (last && (increment_of(cv, &last->state, time, &increment) != MH_OK ||
-                 mh_fusion_add(&summary.of.plain, &increment, 1, &corrected) != MH_OK)) {
+    if (last &&
+        (increment_of(cv, &last->state, time, &increment) != MH_OK ||
+         mh_fusion_add(&summary.of.plain, &increment, 1, &corrected) != MH_OK || !mh_summary_sane(&corrected))) {
         corrected = summary.of.plain; /* what was told is of no use */
     }
     cv->reference = summary.of.plain;

@@ -14,7 +14,7 @@ static bool by_increments(const struct mh_fusion_centre *centre)
 static enum mh_status init(void *state, const void *config)
 {
     const struct mh_fusion_centre_config *chosen = config;
-    const mh_tick hour = 3600 * MH_TICKS_PER_S;
+    const mh_tick hour = 3600000u;
     struct mh_fusion_centre *centre = state;
     if (centre == NULL || chosen == NULL || (unsigned)chosen->rule >= MH_FUSION_CENTRAL || chosen->clusters < 1 ||
         chosen->clusters > MH_FUSED_MAX || chosen->motion.tick < 1 || chosen->motion.tick > hour ||
@@ -325,11 +325,13 @@ static enum mh_status fuse_increments(struct mh_fusion_centre *centre, mh_tick t
             break;
         }
         struct mh_information increment = {.n = N};
+        struct mh_gaussian more;
         memcpy(increment.vector, slot->x, sizeof slot->x);
         memcpy(increment.matrix, slot->P, sizeof slot->P);
         status = predict(centre, fused, now, slot->time);
         now = slot->time;
-        if (status == MH_OK && mh_fusion_add(fused, &increment, 1, fused) == MH_OK) {
+        if (status == MH_OK && mh_fusion_add(fused, &increment, 1, &more) == MH_OK && mh_summary_sane(&more)) {
+            *fused = more;
             slot->held = slot->fresh = false;
             (*used)++;
             if (now == time) {

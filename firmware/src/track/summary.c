@@ -35,6 +35,21 @@ static bool get(const uint8_t **at, mh_real *values, uint_fast8_t count)
     return finite;
 }
 
+bool mh_summary_sane(const struct mh_gaussian *state)
+{
+    bool sane = true;
+    for (uint_fast8_t i = 0; i < N; i++) {
+        const mh_real most = i % 2 == 0 ? MH_SUMMARY_FARTHEST_M : MH_SUMMARY_FASTEST_MPS;
+        sane = sane && mh_within(state->x[i], -most, most) && state->P[MH_PACKED(i, i)] <= mh_squared(most);
+    }
+    return sane;
+}
+
+static bool read_gaussian(struct mh_gaussian *gaussian, const uint8_t *at)
+{
+    return mh_gaussian_read(gaussian, N, at) == MH_OK && mh_summary_sane(gaussian);
+}
+
 size_t mh_summary_write(const struct mh_summary *summary, uint8_t *bytes)
 {
     uint8_t *at = bytes;
@@ -60,13 +75,19 @@ size_t mh_summary_write(const struct mh_summary *summary, uint8_t *bytes)
     return (size_t)(at - bytes);
 }
 
-static enum mh_status read_split(struct mh_split_gaussian *split, const uint8_t *at)
+/* Both parts of a sane covariance are. */
+static bool read_split(struct mh_split_gaussian *split, const uint8_t *at)
 {
     split->dependent.n = N;
-    return get(&at, split->dependent.x, N) && get(&at, split->dependent.P, PACKED) &&
-                   get(&at, split->independent, PACKED) && mh_split_check(split) == MH_OK
-               ? MH_OK
-               : MH_ERR_CORRUPT;
+    if (!get(&at, split->dependent.x, N) || !get(&at, split->dependent.P, PACKED) ||
+        !get(&at, split->independent, PACKED) || mh_split_check(split) != MH_OK) {
+        return false;
+    }
+    struct mh_gaussian whole = split->dependent;
+    for (uint_fast8_t i = 0; i < PACKED; i++) {
+        whole.P[i] += split->independent[i];
+    }
+    return mh_summary_sane(&whole);
 }
 
 enum mh_status mh_summary_read(struct mh_summary *summary, const uint8_t *bytes, size_t length)
@@ -81,11 +102,11 @@ enum mh_status mh_summary_read(struct mh_summary *summary, const uint8_t *bytes,
     switch (bytes[0]) {
     case MH_SUMMARY_PLAIN:
         told.kind = MH_SUMMARY_PLAIN;
-        right = length == PLAIN_BYTES && mh_gaussian_read(&told.of.plain, N, at) == MH_OK;
+        right = length == PLAIN_BYTES && read_gaussian(&told.of.plain, at);
         break;
     case MH_SUMMARY_SPLIT:
         told.kind = MH_SUMMARY_SPLIT;
-        right = length == SPLIT_BYTES && read_split(&told.of.split, at) == MH_OK;
+        right = length == SPLIT_BYTES && read_split(&told.of.split, at);
         break;
     case MH_SUMMARY_INCREMENT:
         told.kind = MH_SUMMARY_INCREMENT;
@@ -98,7 +119,7 @@ enum mh_status mh_summary_read(struct mh_summary *summary, const uint8_t *bytes,
         break;
     case MH_SUMMARY_FUSED:
         told.kind = MH_SUMMARY_FUSED;
-        right = length == FUSED_BYTES && mh_gaussian_read(&told.of.plain, N, at) == MH_OK;
+        right = length == FUSED_BYTES && read_gaussian(&told.of.plain, at);
         if (right) {
             at += MH_GAUSSIAN_BYTES(N);
             told.clusters = mh_get_u16(&at);

@@ -348,10 +348,16 @@ static void feedback_that_is_of_no_use_is_refused(void)
     TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, correct(8, &told));
     told.P[0] = NAN;
     TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, correct(8, &told));
+    told = start();
+    told.x[0] = 1e30f; /* finite, but not for long */
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, correct(8, &told));
+    told = start();
+    told.P[0] = 1e30f;
+    TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, correct(8, &told));
     TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_tracker_cv_ekf.correct(&state, 8 * TICK, bytes, 3));
     summarise(8);
     TEST_ASSERT_EQUAL(MH_ERR_CORRUPT, mh_tracker_cv_ekf.correct(&state, 8 * TICK, bytes, length)); /* an increment */
-    TEST_ASSERT_EQUAL_UINT32(8, state.counters.refused);
+    TEST_ASSERT_EQUAL_UINT32(10, state.counters.refused);
     const struct mh_gaussian after = tracked(8);
     TEST_ASSERT_EQUAL_MEMORY(&before, &after, sizeof before);
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_tracker_cv_ekf.correct(&state, 8 * TICK, NULL, 3));

@@ -180,6 +180,32 @@ static void an_increment_that_decreases(void)
     TEST_ASSERT_TRUE(estimate.covariance.xx > 0 && estimate.covariance.xx < 0.5f);
 }
 
+/* Nothing is so far or so fast: what is as absurd as this would be beyond all numbers soon, and the centre be lost for good. */
+static void what_is_absurd_is_left_out(void)
+{
+    begin(MH_FUSION_HIF);
+    TEST_ASSERT_EQUAL_INT(MH_OK, take_increment(0, 0, 1000, 1e38f, 0.9f));
+    TEST_ASSERT_EQUAL_INT(MH_OK, take_increment(1, 0, 1000, 11, 0.5f));
+    for (mh_tick time = 1000; time <= 300000; time += 1000) {
+        TEST_ASSERT_EQUAL_INT(MH_OK, mh_centre_fusion.fuse(&centre, time, &estimate));
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, centre.counters.unfit);
+    TEST_ASSERT_FLOAT_WITHIN(100, 240, estimate.position.x); /* 0.8 m/s, less surely with every second */
+    begin(MH_FUSION_CI);
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, take_plain(0, 1000, 1e20f, 0.1f));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, take_plain(0, 1000, 1, 1e20f));
+    TEST_ASSERT_EQUAL_INT(MH_OK, take_plain(0, 1000, 1e6f, 1e12f));
+}
+
+static void an_hour_is_the_longest_to_keep(void)
+{
+    begin(MH_FUSION_CI);
+    config.keep = config.motion.tick = 3600000u;
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_centre_fusion.init(&centre, &config));
+    config.keep++;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_centre_fusion.init(&centre, &config));
+}
+
 static void feedback_says_what_is_in_it(void)
 {
     size_t length;
@@ -293,6 +319,8 @@ int main(void)
     RUN_TEST(a_time_from_the_far_future);
     RUN_TEST(increments);
     RUN_TEST(an_increment_that_decreases);
+    RUN_TEST(what_is_absurd_is_left_out);
+    RUN_TEST(an_hour_is_the_longest_to_keep);
     RUN_TEST(feedback_says_what_is_in_it);
     RUN_TEST(every_rule);
     RUN_TEST(split_summaries);
