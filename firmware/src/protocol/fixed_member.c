@@ -130,7 +130,7 @@ void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said)
 void mh_fixed_report_taken(struct mh_fixed *f, mh_node_id by)
 {
     if (f->role == MH_FIXED_MEMBER && by == mh_fixed_head(f)->id &&
-        silence(f) < BELIEVED * f->config->patience * f->config->report_interval) {
+        silence(f) < (mh_tick)BELIEVED * f->config->patience * f->config->report_interval) {
         wait_for_head(f);
     }
 }
