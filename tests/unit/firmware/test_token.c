@@ -1041,8 +1041,16 @@ static void any_messages_are_borne(void)
             bytes[k] = random >> 28 < 12 ? 0 : (uint8_t)(random >> 16);
         }
         switch (message.kind) { /* what wire.h guarantees, and some that are about now */
+        case MH_MESSAGE_HELLO:
+            message.as.hello.x_mm %= MH_COORDINATE_MAX_MM;
+            message.as.hello.y_mm %= MH_COORDINATE_MAX_MM;
+            break;
         case MH_MESSAGE_VICINITY:
             message.as.vicinity.count %= MH_VICINITY_NODES + 1;
+            for (uint8_t k = 0; k < MH_VICINITY_NODES; k++) {
+                message.as.vicinity.x_mm[k] %= MH_COORDINATE_MAX_MM;
+                message.as.vicinity.y_mm[k] %= MH_COORDINATE_MAX_MM;
+            }
             break;
         case MH_MESSAGE_ASK:
             message.as.ask.track = SINK;
