@@ -352,7 +352,7 @@ int main(int argc, char **argv)
             failed = failed || save_cluster(mote, name, (uint8_t)choice, (uint8_t)second);
         }
     }
-    for (uint8_t choice = 0; choice < 64; choice += 12) {
+    for (uint8_t choice = 0; choice < 64; choice += 24) {
         for (uint8_t second = 64; second < 96; second++) {
             char name[20];
             snprintf(name, sizeof name, "search%u_%u", choice, second);
