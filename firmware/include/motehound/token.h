@@ -164,7 +164,7 @@ struct mh_token_node {
 
 extern const struct mh_protocol mh_protocol_token;
 
-/* nominal configuration: 6 link attempts after 20 ticks, the sink `sink` at `place`, nobody to begin, 80 m, 5 s, 1 s, hellos every 60 s, 3 calm heads of at
+/* nominal configuration: 12 link attempts after 20 ticks, the sink `sink` at `place`, nobody to begin, 80 m, 5 s, 1 s, hellos every 60 s, 3 calm heads of at
  * most 60, patience of 12 instants, with faces */
 void mh_token_config_default(struct mh_token_config *config, mh_node_id sink, const struct mh_place *place);
 
