@@ -154,12 +154,13 @@ static void start_of(const struct scenario *scenario, mh_real *mean, mh_real *co
 
 static void set_up_cv(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
-    (void)region;
+    const struct known_target target = target_of(scenario, region);
     struct mh_cv_config *config = &choice->config.cv;
     mh_cv_config_default(config);
     config->motion = motion_of(scenario);
     start_of(scenario, config->mean, config->covariance);
-    config->variance = (mh_real)pow(fmax(scenario->sensor.range_noise_m, 1e-3), 2);
+    config->variance = (mh_real)(target.range_sd_m * target.range_sd_m);
+    config->origin.z_mm = (int32_t)lround(1000 * target.height_m);
     config->alpha = (mh_real)scenario->tracker.ukf_alpha;
     if (scenario->fusion.rule != MH_FUSION_CENTRAL) {
         config->summary = mh_summary_kind_of(scenario->fusion.rule);

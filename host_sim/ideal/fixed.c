@@ -188,9 +188,12 @@ static int begin(struct run *run, char *error, size_t error_size)
 static int make(struct run *run, uint64_t seed, char *error, size_t error_size)
 {
     const struct scenario *scenario = run->scenario;
+    const struct scenario_field field = scenario_field(scenario);
+    const struct mh_place corner = place_from_metres(field.width_m, field.height_m, 0);
+    const struct mh_region region = {0, corner.x_mm, 0, corner.y_mm};
     if (deployment_make(&run->deployment, scenario, seed, error, error_size) ||
         trajectory_make(&run->path, scenario, seed, error, error_size) ||
-        tracker_choose(scenario, NULL, &run->tracker, error, error_size)) {
+        tracker_choose(scenario, &region, &run->tracker, error, error_size)) {
         return -1;
     }
     centre_choose(scenario, &run->centre);
