@@ -23,7 +23,7 @@ struct mh_iterated_ekf_config {
     uint8_t iterations; /* at most, tries that do not lower f included; 1 to 255. 20 to 30 are plenty */
     mh_real
         damping; /* at first, a share of the diagonal: 0.01. Times 0.1 (to 1e-9) after a step that did not raise f, times 10 after one that would */
-    mh_real settled; /* ends when a step changes f by less than this share of 1 + f: 1e-4 is a hundredth of a standard
+    mh_real settled; /* ends when a step lowers f by less than this share of 1 + f: 1e-4 is a hundredth of a standard
                       * deviation, 1e-6 about the rounding of f */
 };
 

@@ -171,17 +171,15 @@ enum mh_status mh_iterated_ekf_update(struct mh_gaussian *gaussian, const struct
     uint_fast8_t tries = 0;
     for (uint_fast8_t i = 0; i < config->iterations && moving; i++) {
         damped_step(&best, prior.n, damping, trial.y);
-        const bool possible = linearise(&trial, &prior, observations) == MH_OK;
-        const mh_real rise = possible ? trial.cost - best.cost : (mh_real)INFINITY;
-        moving = mh_abs(rise) >= config->settled * (1.0f + best.cost);
-        if (rise <= 0) {
+        if (linearise(&trial, &prior, observations) == MH_OK && trial.cost <= best.cost) {
+            moving = best.cost - trial.cost >= config->settled * (1.0f + best.cost);
             best = trial;
             damping = mh_max(0.1f * damping, DAMPING_MIN);
             tries = 0;
         } else {
             damping = mh_max(10.0f * damping, DAMPING_MIN);
             tries++;
-            moving = moving && tries < TRIES_MAX;
+            moving = tries < TRIES_MAX;
         }
     }
     struct mh_gaussian posterior = *gaussian;
