@@ -312,7 +312,8 @@ void mh_token_config_default(struct mh_token_config *config, mh_node_id sink, co
                                             .faces = true};
     *config = nominal;
     mh_link_config_default(&config->link);
-    config->link.attempts = 12; /* a neighbour that does not acknowledge five is left out: so the way around two dead ones is found */
+    config->link.attempts =
+        12; /* a neighbour that does not acknowledge five is left out: so the way around two dead ones is found */
 }
 
 static bool place_valid(const struct mh_place *place)
