@@ -471,6 +471,14 @@ static void close_instant(struct mh_mote *mote, mh_tick now)
     }
 }
 
+static void ring_clock(struct mh_mote *mote, mh_tick now)
+{
+    struct mh_message message;
+    if (mote->config->clock && mote->config->clock->timer(mote->config->clock_state, now, &message)) {
+        transmit(mote, mote->config->clock->types, MH_BROADCAST, &message);
+    }
+}
+
 void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
 {
     if (mote->protocol_alarm_set && !mh_tick_before(now, mote->protocol_alarm)) {
@@ -480,10 +488,7 @@ void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
     if (mote->report_waits && !mh_tick_before(now, mote->report_time)) {
         report_waiting(mote, now);
     }
-    struct mh_message message;
-    if (mote->config->clock && mote->config->clock->timer(mote->config->clock_state, now, &message)) {
-        transmit(mote, mote->config->clock->types, MH_BROADCAST, &message);
-    }
+    ring_clock(mote, now);
     if (mote->leads && knows_time(mote) &&
         !mh_tick_before(network_time(mote, now), mh_head_deadline(mote->config->head_state))) {
         close_instant(mote, now);

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#define BELIEVED 4                 /* patiences that acknowledged samples stand for what the head has not said */
+#define BELIEVED 4u                /* patiences that acknowledged samples stand for what the head has not said */
 #define TELL_SPREAD 10             /* part of a report interval over which heads tell the sink of their tracks */
 #define LONGEST ((int32_t)1 << 30) /* ticks: that anybody says to have led, so that times can be compared */
 
