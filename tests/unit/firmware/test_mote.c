@@ -352,7 +352,7 @@ static void a_node_reports_what_is_worth_it(void)
     TEST_ASSERT_EQUAL_UINT32(0, mote.counters.reports_asked);
 }
 
-static void bad_readings_are_counted_and_leave_no_trace(void)
+static void bad_readings_leave_no_trace(void)
 {
     come_up(0);
     receive_beacon(1, true);
@@ -392,7 +392,7 @@ static void a_silent_node_answers_when_asked(void)
     TEST_ASSERT_EQUAL_UINT32(2, mote.counters.reports_asked);
 }
 
-static void an_answer_that_was_due_anyway_is_not_flagged(void)
+static void a_due_answer_is_not_flagged(void)
 {
     come_up(0);
     receive_beacon(1, false);
@@ -402,7 +402,7 @@ static void an_answer_that_was_due_anyway_is_not_flagged(void)
     TEST_ASSERT_EQUAL_UINT8(0, port_saw.message.as.report.flags);
 }
 
-static void a_request_for_a_sample_that_never_came_lapses(void)
+static void a_request_may_lapse(void)
 {
     come_up(0);
     receive_beacon(1, true);
@@ -555,7 +555,7 @@ static void reports_of_one_instant_are_spread(void)
     TEST_ASSERT_TRUE(changed > NODES * 9 / 10); /* no node is always the last */
 }
 
-static void a_report_that_waits_is_sent_only_if_it_is_still_wanted(void)
+static void a_report_that_waits_may_lapse(void)
 {
     sensor.report_spread = 400;
     come_up(0);
@@ -602,10 +602,10 @@ int main(void)
     RUN_TEST(a_node_speaks_the_networks_time);
     RUN_TEST(a_head_keeps_the_networks_instants);
     RUN_TEST(a_node_reports_what_is_worth_it);
-    RUN_TEST(bad_readings_are_counted_and_leave_no_trace);
+    RUN_TEST(bad_readings_leave_no_trace);
     RUN_TEST(a_silent_node_answers_when_asked);
-    RUN_TEST(an_answer_that_was_due_anyway_is_not_flagged);
-    RUN_TEST(a_request_for_a_sample_that_never_came_lapses);
+    RUN_TEST(a_due_answer_is_not_flagged);
+    RUN_TEST(a_request_may_lapse);
     RUN_TEST(unsound_frames_are_counted);
     RUN_TEST(a_head_gathers_steps_and_reports);
     RUN_TEST(a_head_tells_when_a_track_begins_and_ends);
@@ -614,7 +614,7 @@ int main(void)
     RUN_TEST(a_node_sleeps_between_beacons);
     RUN_TEST(the_fate_of_a_frame_goes_to_the_protocol);
     RUN_TEST(reports_of_one_instant_are_spread);
-    RUN_TEST(a_report_that_waits_is_sent_only_if_it_is_still_wanted);
+    RUN_TEST(a_report_that_waits_may_lapse);
     RUN_TEST(the_next_reading_does_not_overtake_a_report);
     port_exit(UNITY_END() > 0);
     return 0;
