@@ -11,6 +11,9 @@
 
 #define MH_PACKED_SIZE(n) ((n) * ((n) + 1) / 2)
 
+/* The same of a number known at run time, n <= 16. */
+static inline uint_fast8_t mh_packed_size(uint8_t n) { return (uint_fast8_t)MH_PACKED_SIZE(n); }
+
 /* Index of element (row, column), row <= column; a constant where both are. */
 #define MH_PACKED(row, column) ((column) * ((column) + 1) / 2 + (row))
 
@@ -32,6 +35,10 @@ enum mh_status mh_cholesky_factor_raised(int n, mh_real *a, bool *raised);
 
 /* l := L L', of the factor L. */
 void mh_cholesky_multiply(int n, mh_real *l);
+
+/* b := L b, and b := L^-1 b, of the factor L. */
+void mh_lower_multiply(int n, const mh_real *l, mh_real *b);
+void mh_lower_solve(int n, const mh_real *l, mh_real *b);
 
 /* b := A^-1 b, where `l` is the factor of A. */
 void mh_cholesky_solve(int n, const mh_real *l, mh_real *b);

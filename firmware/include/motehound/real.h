@@ -12,6 +12,7 @@
 typedef float mh_real;
 
 #define MH_PI 3.14159265f
+#define MH_REAL_MIN 1.2e-38f /* positive numbers below are not normal: they lose digits, or are 0 */
 
 static inline mh_real mh_abs(mh_real a) { return fabsf(a); }
 static inline mh_real mh_sqrt(mh_real a) { return sqrtf(a); }

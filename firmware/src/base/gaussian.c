@@ -4,13 +4,8 @@
 
 #include <string.h>
 
-#define SMALLEST 1.2e-38f /* of the normal floats */
-
 /* A determinant of correlations from which on rounding, of some 1e-6, does no harm. */
 #define WELL_CONDITIONED (1.0f / 16384.0f)
-
-/* Numbers in use of a packed matrix of n states. */
-static uint_fast8_t packed_size(uint8_t n) { return (uint_fast8_t)MH_PACKED_SIZE(n); }
 
 static bool all_finite(const mh_real *a, uint_fast8_t count)
 {
@@ -24,7 +19,7 @@ static bool all_finite(const mh_real *a, uint_fast8_t count)
 /* P has no factor: a number that is not finite leaves no pivot behind it that is. */
 static enum mh_status why_not(const struct mh_gaussian *gaussian)
 {
-    return all_finite(gaussian->P, packed_size(gaussian->n)) ? MH_ERR_SINGULAR : MH_ERR_NOT_FINITE;
+    return all_finite(gaussian->P, mh_packed_size(gaussian->n)) ? MH_ERR_SINGULAR : MH_ERR_NOT_FINITE;
 }
 
 enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian)
@@ -38,7 +33,7 @@ enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh
     }
     root->n = n;
     memcpy(root->x, gaussian->x, n * sizeof root->x[0]);
-    memcpy(root->L, gaussian->P, packed_size(n) * sizeof root->L[0]);
+    memcpy(root->L, gaussian->P, mh_packed_size(n) * sizeof root->L[0]);
     return mh_cholesky_factor(n, root->L) == MH_OK ? MH_OK : why_not(gaussian);
 }
 
@@ -55,7 +50,7 @@ size_t mh_gaussian_write(const struct mh_gaussian *gaussian, uint8_t *bytes)
     for (uint_fast8_t i = 0; i < n; i++) {
         mh_put_real(&at, gaussian->x[i]);
     }
-    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+    for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
         mh_put_real(&at, gaussian->P[i]);
     }
     return (size_t)MH_GAUSSIAN_BYTES(n);
@@ -72,14 +67,14 @@ enum mh_status mh_gaussian_read(struct mh_gaussian *gaussian, uint8_t n, const u
     for (uint_fast8_t i = 0; i < n; i++) {
         told.x[i] = mh_get_real(&at);
     }
-    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+    for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
         told.P[i] = mh_get_real(&at);
     }
     if (mh_gaussian_check(&told) != MH_OK) {
         return MH_ERR_CORRUPT;
     }
     memcpy(gaussian->x, told.x, n * sizeof told.x[0]);
-    memcpy(gaussian->P, told.P, packed_size(n) * sizeof told.P[0]);
+    memcpy(gaussian->P, told.P, mh_packed_size(n) * sizeof told.P[0]);
     gaussian->n = n;
     return MH_OK;
 }
@@ -92,13 +87,13 @@ enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian)
     if (!all_finite(gaussian->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
-    memcpy(L, gaussian->P, packed_size(n) * sizeof L[0]);
+    memcpy(L, gaussian->P, mh_packed_size(n) * sizeof L[0]);
     if (mh_cholesky_factor_raised(n, L, &raised) != MH_OK) {
         return why_not(gaussian);
     }
     if (raised) {
         mh_cholesky_multiply(n, L);
-        memcpy(gaussian->P, L, packed_size(n) * sizeof L[0]);
+        memcpy(gaussian->P, L, mh_packed_size(n) * sizeof L[0]);
     }
     return MH_OK;
 }
@@ -147,7 +142,7 @@ enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *
 void mh_covariance_predict(uint8_t n, mh_real *P, const mh_real *F, const mh_real *Q)
 {
     mh_real before[MH_PACKED_SIZE(MH_STATES_MAX)];
-    memcpy(before, P, packed_size(n) * sizeof before[0]);
+    memcpy(before, P, mh_packed_size(n) * sizeof before[0]);
     for (int j = 0; j < n; j++) {
         mh_real moved[MH_STATES_MAX]; /* P times row j of F */
         for (int k = 0; k < n; k++) {
@@ -250,14 +245,14 @@ enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh
     if (!all_finite(root->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
-    memcpy(P, root->L, packed_size(n) * sizeof P[0]);
+    memcpy(P, root->L, mh_packed_size(n) * sizeof P[0]);
     mh_cholesky_multiply(n, P);
     for (uint_fast8_t i = 0; i < n; i++) {
         const mh_real variance = P[MH_PACKED(i, i)];
         if (!mh_finite(variance)) {
             return MH_ERR_NOT_FINITE;
         }
-        if (variance < SMALLEST) {
+        if (variance < MH_REAL_MIN) {
             return MH_ERR_SINGULAR;
         }
         shares *= mh_squared(root->L[MH_PACKED(i, i)]) / variance;
@@ -270,6 +265,6 @@ enum mh_status mh_gaussian_compose(struct mh_gaussian *gaussian, const struct mh
     }
     gaussian->n = n;
     memcpy(gaussian->x, root->x, n * sizeof P[0]);
-    memcpy(gaussian->P, P, packed_size(n) * sizeof P[0]);
+    memcpy(gaussian->P, P, mh_packed_size(n) * sizeof P[0]);
     return MH_OK;
 }

@@ -65,15 +65,32 @@ void mh_cholesky_multiply(int n, mh_real *l)
     }
 }
 
-void mh_cholesky_solve(int n, const mh_real *l, mh_real *b)
+void mh_lower_multiply(int n, const mh_real *l, mh_real *b)
+{
+    for (int i = n - 1; i >= 0; i--) {
+        const mh_real *row = l + row_start(i);
+        mh_real sum = 0.0f;
+        for (int k = 0; k <= i; k++) {
+            sum += row[k] * b[k];
+        }
+        b[i] = sum;
+    }
+}
+
+void mh_lower_solve(int n, const mh_real *l, mh_real *b)
 {
     for (int i = 0; i < n; i++) {
-        const mh_real *row = l + row_start(i);
         for (int k = 0; k < i; k++) {
-            b[i] -= row[k] * b[k];
+            b[i] -= l[k] * b[k];
         }
-        b[i] /= row[i];
+        b[i] /= l[i];
+        l += i + 1;
     }
+}
+
+void mh_cholesky_solve(int n, const mh_real *l, mh_real *b)
+{
+    mh_lower_solve(n, l, b);
     for (int i = n - 1; i >= 0; i--) {
         const mh_real *row = l + row_start(i);
         b[i] /= row[i];

@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#define SMALLEST 1.2e-38f /* of the normal floats */
-
 enum mh_status mh_ekf_predict(struct mh_gaussian *gaussian, const struct mh_transition *transition, const mh_real *Q)
 {
     struct mh_gaussian next = *gaussian;
@@ -37,7 +35,7 @@ static enum mh_status update(struct mh_gaussian *gaussian, struct mh_gaussian_ro
         if (status != MH_OK) {
             return status;
         }
-        if (!(observations->variance[k] >= SMALLEST)) {
+        if (!(observations->variance[k] >= MH_REAL_MIN)) {
             return MH_ERR_ARGUMENT;
         }
         mh_real innovation = observations->z[k] - z;

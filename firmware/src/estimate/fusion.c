@@ -153,7 +153,7 @@ static enum mh_status optimise(const struct mh_gaussian *estimates, uint8_t coun
     for (int step = 0; step < STEPS && moved > 1e-6f; step++) {
         mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)] = {0}, PP[MH_PACKED_SIZE(MH_STATES_MAX)];
         for (uint_fast8_t i = 0; i < count; i++) {
-            for (uint_fast8_t k = 0; k < packed_size(n); k++) {
+            for (uint_fast8_t k = 0; k < mh_packed_size(n); k++) {
                 P[k] += share[i] * I[i][k];
             }
         }

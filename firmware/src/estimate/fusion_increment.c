@@ -22,7 +22,7 @@ enum mh_status mh_fusion_increment(const struct mh_gaussian *posterior, const st
         return status;
     }
     mh_real sum = 0; /* finite only if all are */
-    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+    for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
         difference.matrix[i] = after[i] - difference.matrix[i];
         sum += mh_abs(difference.matrix[i]);
     }
@@ -53,7 +53,7 @@ static enum mh_status check(const struct mh_information *increment, uint8_t n, c
     for (uint_fast8_t i = 0; i < n; i++) {
         sum += mh_abs(increment->vector[i]);
     }
-    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+    for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
         sum += mh_abs(increment->matrix[i]);
         kept[i] = increment->matrix[i] + ROUNDING * I[i];
     }
@@ -86,7 +86,7 @@ enum mh_status mh_fusion_add(const struct mh_gaussian *prior, const struct mh_in
         for (uint_fast8_t i = 0; i < n; i++) {
             sum.vector[i] += increment->vector[i] - known[i];
         }
-        for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+        for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
             sum.matrix[i] += increment->matrix[i];
         }
     }

@@ -13,30 +13,6 @@ struct joint {
     mh_real y[MH_STATES_MAX];                /* b's mean less a's in this basis */
 };
 
-/* a := L^-1 a; b := L b, L lower triangular */
-static void lower_solve(uint8_t n, const mh_real *L, mh_real *a)
-{
-    for (uint_fast8_t i = 0; i < n; i++) {
-        for (uint_fast8_t k = 0; k < i; k++) {
-            a[i] -= L[k] * a[k];
-        }
-        a[i] /= L[i];
-        L += i + 1;
-    }
-}
-
-static void lower_times(uint8_t n, const mh_real *L, mh_real *b)
-{
-    for (uint_fast8_t i = n; i-- > 0;) {
-        const mh_real *row = L + MH_PACKED(0, i);
-        mh_real sum = 0;
-        for (uint_fast8_t k = 0; k <= i; k++) {
-            sum += row[k] * b[k];
-        }
-        b[i] = sum;
-    }
-}
-
 static mh_real dot(uint8_t n, const mh_real *a, const mh_real *b)
 {
     mh_real sum = 0;
@@ -87,10 +63,10 @@ static enum mh_status find_joint(const struct mh_gaussian *a, const struct mh_ga
         for (uint_fast8_t i = 0; i < n; i++) {
             column[k][i] = i < k ? 0 : of_b.L[MH_PACKED(k, i)];
         }
-        lower_solve(n, of_a.L, column[k]);
+        mh_lower_solve(n, of_a.L, column[k]);
         offset[k] = b->x[k] - a->x[k];
     }
-    lower_solve(n, of_a.L, offset);
+    mh_lower_solve(n, of_a.L, offset);
     mh_real largest = 1;
     for (int sweep = 0; sweep < SWEEPS && largest > 1e-3f; sweep++) {
         largest = 0;
@@ -111,7 +87,7 @@ static enum mh_status find_joint(const struct mh_gaussian *a, const struct mh_ga
         }
         joint->d[k] = d;
         joint->y[k] = dot(n, column[k], offset);
-        lower_times(n, of_a.L, column[k]);
+        mh_lower_multiply(n, of_a.L, column[k]);
         joint->length[k] = dot(n, column[k], column[k]);
     }
     return MH_OK;

@@ -10,7 +10,7 @@
 /* sum = a + weight * b, packed */
 static void add_scaled(uint8_t n, const mh_real *a, mh_real weight, const mh_real *b, mh_real *sum)
 {
-    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+    for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
         sum[i] = a[i] + weight * b[i];
     }
 }
@@ -47,7 +47,7 @@ static enum mh_status split_information(const struct mh_split_gaussian *estimate
     const enum mh_status status = mh_cholesky_factor(n, I);
     if (status == MH_OK) {
         mh_cholesky_invert(n, I);
-        for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+        for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
             I[i] *= w;
         }
     }

@@ -8,7 +8,7 @@ enum mh_status mh_information_of(const struct mh_gaussian *gaussian, mh_real *I)
         return status;
     }
     mh_cholesky_invert(root.n, root.L);
-    memcpy(I, root.L, packed_size(root.n) * sizeof I[0]);
+    memcpy(I, root.L, mh_packed_size(root.n) * sizeof I[0]);
     return MH_OK;
 }
 
@@ -42,7 +42,7 @@ void mh_information_add(struct mh_information_sum *sum, mh_real weight, const mh
     for (uint_fast8_t i = 0; i < n; i++) {
         sum->vector[i] += told[i];
     }
-    for (uint_fast8_t i = 0; i < packed_size(n); i++) {
+    for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
         sum->matrix[i] += weight * I[i];
     }
 }

@@ -14,8 +14,6 @@ struct mh_information_sum {
     mh_real matrix[MH_PACKED_SIZE(MH_STATES_MAX)];
 };
 
-static inline uint_fast8_t packed_size(uint8_t n) { return (uint_fast8_t)MH_PACKED_SIZE(n); }
-
 /* I = P^-1. Errors: as mh_gaussian_check. */
 enum mh_status mh_information_of(const struct mh_gaussian *gaussian, mh_real *I);
 

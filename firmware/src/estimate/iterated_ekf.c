@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#define SMALLEST 1.2e-38f /* of the normal floats */
 #define DAMPING_MIN 1e-9f
 #define TRIES_MAX 12 /* in succession that do not lower f */
 
@@ -39,26 +38,20 @@ static void rotate(struct quadratic *f, uint8_t n, mh_real *row, mh_real d)
 /* x = x0 + L y */
 static void state_of(const struct mh_gaussian_root *prior, const mh_real *y, mh_real *x)
 {
-    const mh_real *row = prior->L;
+    memcpy(x, y, prior->n * sizeof x[0]);
+    mh_lower_multiply(prior->n, prior->L, x);
     for (uint_fast8_t i = 0; i < prior->n; i++) {
-        x[i] = prior->x[i];
-        for (uint_fast8_t j = 0; j <= i; j++) {
-            x[i] += *row++ * y[j];
-        }
+        x[i] += prior->x[i];
     }
 }
 
 /* y = L^-1 (x - x0) */
 static void place_of(const struct mh_gaussian_root *prior, const mh_real *x, mh_real *y)
 {
-    const mh_real *row = prior->L;
     for (uint_fast8_t i = 0; i < prior->n; i++) {
         y[i] = x[i] - prior->x[i];
-        for (uint_fast8_t j = 0; j < i; j++) {
-            y[i] -= *row++ * y[j];
-        }
-        y[i] /= *row++;
     }
+    mh_lower_solve(prior->n, prior->L, y);
 }
 
 /* f at f->y, with all models linearised there. */
@@ -81,7 +74,7 @@ static enum mh_status linearise(struct quadratic *f, const struct mh_gaussian_ro
         if (status != MH_OK) {
             return status;
         }
-        if (!(observations->variance[k] >= SMALLEST)) {
+        if (!(observations->variance[k] >= MH_REAL_MIN)) {
             return MH_ERR_ARGUMENT;
         }
         mh_real residual = observations->z[k] - z;

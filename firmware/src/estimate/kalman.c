@@ -5,8 +5,6 @@
 /* A pivot below this share of its variance is rounding: 8 units in the last place of a float. */
 #define PIVOT_FLOOR (1.0f / 2097152.0f)
 
-#define SMALLEST 1.2e-38f /* of the normal floats */
-
 /* P = U D U', packed, in place, last column first. A pivot that rounding has swallowed is an error, or with `raise` it is
  * put back to its floor. */
 static enum mh_status factor(uint8_t n, mh_real *P, bool raise)
@@ -76,7 +74,7 @@ enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real 
     if (!mh_finite(mean) || !mh_finite(variance)) {
         return MH_ERR_NOT_FINITE;
     }
-    if (variance < SMALLEST) {
+    if (variance < MH_REAL_MIN) {
         return MH_ERR_SINGULAR;
     }
     mh_real *column = filter->ud + MH_PACKED(0, n);
@@ -222,7 +220,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
         g[j] = *u++ * sum;
         predicted += sum * g[j];
     }
-    if (!(variance >= SMALLEST)) {
+    if (!(variance >= MH_REAL_MIN)) {
         return MH_ERR_ARGUMENT;
     }
     if (!mh_finite(predicted + variance) || !mh_finite(innovation)) {
@@ -244,7 +242,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
             alpha += f[j] * gain;
             inverse = 1.0f / alpha;
             column[j] *= ratio * inverse;
-            fits = fits && column[j] >= SMALLEST;
+            fits = fits && column[j] >= MH_REAL_MIN;
             for (uint_fast8_t i = 0; i < j; i++) {
                 const mh_real old = column[i];
                 column[i] = old + g[i] * lambda;

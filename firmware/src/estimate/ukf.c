@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#define SMALLEST 1.2e-38f /* of the normal floats */
-
 /* What the weights come to for n states. */
 struct spread {
     mh_real gamma; /* of the sigma points, in standard deviations */
@@ -152,7 +150,7 @@ static enum mh_status look(struct sight *sights, uint16_t count, const struct mh
         const uint16_t number = (uint16_t)(first + k);
         sights[k].D = 0;
         status = observations->predict(observations->context, number, root->x, &sights[k].middle, NULL);
-        if (!(observations->variance[number] >= SMALLEST)) {
+        if (!(observations->variance[number] >= MH_REAL_MIN)) {
             return MH_ERR_ARGUMENT;
         }
     }

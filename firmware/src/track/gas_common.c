@@ -159,7 +159,6 @@ mh_real mh_gas_information(const struct mh_gas_config *config, const struct mh_g
     if (mh_gaussian_factor(&root, estimate) != MH_OK) {
         return 0;
     }
-    const mh_real *L = root.L;
     const struct mh_vec2 source = {estimate->x[0], estimate->x[1]};
     const mh_real spread = estimate->P[MH_PACKED(0, 0)] + estimate->P[MH_PACKED(1, 1)];
     const mh_real rate = mh_exp(estimate->x[RATE]) * mh_gas_scale(config);
@@ -172,9 +171,8 @@ mh_real mh_gas_information(const struct mh_gas_config *config, const struct mh_g
             continue;
         }
         const mh_real h[MH_GAS_STATES] = {rate * slope.x, rate * slope.y, rate * c};
-        const mh_real along[MH_GAS_STATES] = {
-            L[MH_PACKED(0, 0)] * h[0] + L[MH_PACKED(0, 1)] * h[1] + L[MH_PACKED(0, 2)] * h[2],
-            L[MH_PACKED(1, 1)] * h[1] + L[MH_PACKED(1, 2)] * h[2], L[MH_PACKED(2, 2)] * h[2]};
+        mh_real along[MH_GAS_STATES];
+        mh_gaussian_root_gradient(&root, h, along);
         const mh_real gain = 1.0f + mh_squared(along[0]) + mh_squared(along[1]) + mh_squared(along[2]);
         if (mh_finite(gain)) {
             information += mh_log(gain);
