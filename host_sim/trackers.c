@@ -201,6 +201,8 @@ static void set_up_gas(struct tracker_choice *choice, const struct scenario *sce
     config->plume.downwind.y = (mh_real)sin(towards_rad);
     config->unit = (mh_real)scenario->sensor.unit_ppm;
     config->noise = (mh_real)fmax(noise_ppm / scenario->sensor.unit_ppm, least);
+    config->ukf.alpha = (mh_real)scenario->tracker.ukf_alpha;
+    config->ukf.beta = (mh_real)scenario->tracker.ukf_beta;
     config->calm_step_m = (mh_real)scenario->tracker.calm_step_m;
     config->calm_sd_m = (mh_real)scenario->tracker.calm_sd_m;
     const struct scenario_prior prior = scenario_prior(scenario);

@@ -207,7 +207,8 @@ struct scenario {
         int64_t particles;               /* pftl, msl */
         enum resampling_kind resampling; /* pftl */
         bool literal;                    /* pftl: the region widens as published */
-        double ukf_alpha;                /* cv_ukf: spread of the sigma points */
+        double ukf_alpha;                /* cv_ukf, gas_ukf: spread of the sigma points */
+        double ukf_beta;                 /* gas_ukf */
         /* gas, where the wind is measured and the leak is at one of several places: the air's mixing length K / u, sd of the plume's axis about the
          * wind, the share of a sensor's readings below its background and how fast that may move, ppm/h, how long it is learned, for how long readings are
          * remembered and how long their errors stay alike, and the sd of the leak about its place */

@@ -107,12 +107,16 @@ def unit(key: str) -> str:
 def pooled(values: Array, pool: str) -> float:
     if not len(values):
         return float("nan")
+    if pool == "median":
+        return float(np.median(values))
     return float(np.sqrt(np.mean(values**2)) if pool == "rms" else np.mean(values))
 
 
 def summarised(values: list[Array], pool: str) -> tuple[Array, Array]:
     mean = np.array([pooled(v, pool) for v in values])
     sd = np.array([np.std(v, ddof=1) if len(v) > 1 else 0.0 for v in values])
+    if pool == "median":  # of which a standard deviation says nothing
+        sd[:] = np.nan
     return mean, sd
 
 
@@ -193,7 +197,7 @@ def draw_bars(axes: Axes, parts: list[Line]) -> None:
     # The parts of a stack are not independent of each other, so only a single part shows its spread.
     if len(parts) == 1:
         axes.errorbar(parts[0].mean, names, xerr=parts[0].sd, fmt="none", ecolor="#1b1f24", capsize=3, linewidth=1.2)
-        left = left + parts[0].sd
+        left = left + np.nan_to_num(parts[0].sd)
     totals = sum(np.nan_to_num(part.mean) for part in parts)
     for name, total, end in zip(names, np.atleast_1d(totals), left):
         axes.annotate(f"{total:.3g}", (end, name), (5, 0), textcoords="offset points", va="center", color="#3b434d")
@@ -257,7 +261,9 @@ class Drawn:
 
 
 def number(mean: float, sd: float) -> str:
-    return f"{mean:.4g} ± {sd:.2g}" if np.isfinite(mean) else "–"
+    if not np.isfinite(mean):
+        return "–"
+    return f"{mean:.4g} ± {sd:.2g}" if np.isfinite(sd) else f"{mean:.4g}"
 
 
 def drawn(table: Table, panel: Panel, drawing: Drawing) -> Drawn | None:
@@ -278,10 +284,11 @@ def drawn(table: Table, panel: Panel, drawing: Drawing) -> Drawn | None:
         axes.set_xlabel(drawing.label)
     averaged = [short_name(key) for key in panel.grid if key not in (x, drawing.lines)]
     pools = {quantity.pool for quantity in drawing.y}
-    caption = f"{'Root mean square over' if pools == {'rms'} else 'Mean of'} {len(panel.seeds)} seeds"
+    pool = {"rms": "Root mean square over", "median": "Median of"}.get(*pools, "Mean of") if len(pools) == 1 else "Mean of"
+    caption = f"{pool} {len(panel.seeds)} seeds"
     if averaged:
         caption += f", and over every {', '.join(averaged[:-1]) + ' and ' if averaged[1:] else ''}{averaged[-1]}"
-    if is_lines or len(found) == 1:
+    if (is_lines or len(found) == 1) and "median" not in pools:
         caption += "; the error bars are the standard deviation over the seeds" if len(panel.seeds) > 1 else ""
     title = ": ".join(part for part in (panel.title, drawing.title) if part)
     head = [axis_name(x) if is_lines else "series", *(line.name or drawing.label for line in found)]
