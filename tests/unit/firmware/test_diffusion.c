@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#define REPORTS_MAX (MH_DIFFUSION_NEAR + MH_DIFFUSION_STRONG + 6)
+#define REPORTS_MAX (MH_DIFFUSION_NEAR + MH_DIFFUSION_STRONG + 4)
 #define SIDE 9 /* nodes, 2 m apart, jittered */
 #define INTERVAL 1000u
 
