@@ -51,13 +51,13 @@
 #include "motehound/neighbours.h"
 #include "motehound/parcel.h"
 #include "motehound/rendezvous.h"
+#include "motehound/shunned.h"
 
 #define MH_CLUSTER_START 4500      /* ticks */
 #define MH_CLUSTER_ATTEMPTS 2      /* at handing a track to one node, beside what the radio does on its own */
 #define MH_CLUSTER_ALERT_HOPS 2    /* of the alert that a target is lost */
 #define MH_CLUSTER_SEARCH 10       /* instants for which who heard it samples */
-#define MH_CLUSTER_SHUNNED_MAX 4   /* nodes remembered as having failed to take a track */
-#define MH_CLUSTER_SHUN_TIME 60000 /* ticks */
+#define MH_CLUSTER_SHUN_TIME 60000 /* ticks, of who has failed to take a track */
 
 /* A track on its way: number of members, their identifiers, what the tracker saves. */
 #define MH_CLUSTER_CARRIED_MAX (1 + 4 * MH_FORM_MEMBERS + MH_TRACK_BYTES_MAX)
@@ -154,21 +154,17 @@ struct mh_cluster_node {
     uint8_t finds; /* samples of a target that nobody seems to follow */
 
     /* head */
-    bool everyone;           /* all who hear it are asked */
-    bool afresh;             /* the first cluster of a track, or after a loss, is to be formed */
-    uint8_t last_answers;    /* in this cluster; UINT8_MAX: there was no instant yet */
-    uint8_t misses;          /* instants in succession without an answer */
-    uint8_t forms;           /* announcements to go */
-    uint32_t heard;          /* bit k: member k has answered, or joined */
-    bool handing;            /* the track, to ... */
-    struct mh_cluster next;  /* ... the head of this cluster ... */
-    int32_t next_generation; /* ... of this generation ... */
-    uint8_t parts;           /* ... in so many parts to go */
-    struct {
-        mh_node_id id;
-        mh_tick until;
-    } shunned[MH_CLUSTER_SHUNNED_MAX];
-    uint8_t shunned_count, shunned_next;
+    bool everyone;             /* all who hear it are asked */
+    bool afresh;               /* the first cluster of a track, or after a loss, is to be formed */
+    uint8_t last_answers;      /* in this cluster; UINT8_MAX: there was no instant yet */
+    uint8_t misses;            /* instants in succession without an answer */
+    uint8_t forms;             /* announcements to go */
+    uint32_t heard;            /* bit k: member k has answered, or joined */
+    bool handing;              /* the track, to ... */
+    struct mh_cluster next;    /* ... the head of this cluster ... */
+    int32_t next_generation;   /* ... of this generation ... */
+    uint8_t parts;             /* ... in so many parts to go */
+    struct mh_shunned shunned; /* from taking a track */
 
     /* who is to be head */
     struct {

@@ -38,14 +38,14 @@
 #include "motehound/link.h"
 #include "motehound/neighbours.h"
 #include "motehound/parcel.h"
+#include "motehound/shunned.h"
 #include "motehound/vicinity.h"
 
-#define MH_TOKEN_START 9000    /* ticks for the first hellos, before a search begins */
-#define MH_TOKEN_ATTEMPTS 3    /* at handing a part to one node, beside what the radio does on its own */
-#define MH_TOKEN_SHUNNED_MAX 4 /* nodes remembered as having failed to take a token */
-#define MH_TOKEN_SHUNNED 12    /* instants */
-#define MH_TOKEN_REPORTS 3     /* of the end of a search */
-#define MH_TOKEN_RESTARTS 3    /* of a search, by the sink */
+#define MH_TOKEN_START 9000 /* ticks for the first hellos, before a search begins */
+#define MH_TOKEN_ATTEMPTS 3 /* at handing a part to one node, beside what the radio does on its own */
+#define MH_TOKEN_SHUNNED 12 /* instants, of who has failed to take a token */
+#define MH_TOKEN_REPORTS 3  /* of the end of a search */
+#define MH_TOKEN_RESTARTS 3 /* of a search, by the sink */
 #define MH_TOKEN_CARRIED_MAX                                                                                           \
     (2 + MH_TRACK_BYTES_MAX) /* heads so far, calm ones in succession, what the tracker saves */
 
@@ -136,12 +136,8 @@ struct mh_token_node {
     uint8_t heads, calm;
     uint8_t answered[(MH_NEIGHBOURS_MAX + 7) / 8]; /* bit k: neighbour k of the table has */
     uint8_t again;                                 /* the neighbour of the table that is asked once more next */
-    mh_node_id guard; /* who has handed over the token, and keeps it; MH_BROADCAST: nobody */
-    struct {
-        mh_node_id id;
-        mh_tick until;
-    } shunned[MH_TOKEN_SHUNNED_MAX];
-    uint8_t shunned_count, shunned_next;
+    mh_node_id guard;          /* who has handed over the token, and keeps it; MH_BROADCAST: nobody */
+    struct mh_shunned shunned; /* from taking the token */
 
     /* who hands a token over, and then keeps it */
     bool handing, guarding;

@@ -201,11 +201,7 @@ static void forget(struct mh_cluster_node *c)
     if (!mh_tick_before(c->time, c->search_until)) {
         c->search_until = c->time;
     }
-    for (uint8_t i = 0; i < c->shunned_count; i++) {
-        if (!mh_tick_before(c->time, c->shunned[i].until)) {
-            c->shunned[i].until = c->time;
-        }
-    }
+    mh_shunned_age(&c->shunned, c->time);
 }
 
 static void hello_in_window(struct mh_cluster_node *c, mh_tick from, uint8_t windows)
@@ -337,7 +333,7 @@ static void time_jumped(void *state, mh_tick now)
     }
     c->set = 0;
     c->knows = c->asked = c->handing = c->listening = c->incoming.parcel.begun = false;
-    c->answer_ahead = c->shunned_count = c->shunned_next = 0;
+    c->answer_ahead = c->shunned.count = c->shunned.next = 0;
     c->followed.known = false;
     if (c->node->port->network(c->node->context, now, &c->time)) {
         begin(c);

@@ -22,26 +22,6 @@ static int32_t mm_per_s(mh_real mps)
 
 /* ---- who may take the track ---- */
 
-static void shun(struct mh_cluster_node *c, mh_node_id id)
-{
-    c->shunned[c->shunned_next].id = id;
-    c->shunned[c->shunned_next].until = c->time + MH_CLUSTER_SHUN_TIME;
-    c->shunned_next = (uint8_t)((c->shunned_next + 1) % MH_CLUSTER_SHUNNED_MAX);
-    if (c->shunned_count < MH_CLUSTER_SHUNNED_MAX) {
-        c->shunned_count++;
-    }
-}
-
-static bool is_shunned(const struct mh_cluster_node *c, mh_node_id id)
-{
-    for (uint8_t i = 0; i < c->shunned_count; i++) {
-        if (c->shunned[i].id == id && mh_tick_before(c->time, c->shunned[i].until)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool is_among(const struct mh_measurement *measurements, size_t measured, mh_node_id id)
 {
     for (size_t i = 0; i < measured; i++) {
@@ -61,7 +41,7 @@ static size_t candidates_of(const struct mh_cluster_node *c, const struct mh_mea
     candidates[found++] = self;
     for (uint8_t i = 0; i < c->neighbours.count; i++) {
         const struct mh_neighbour *n = &c->neighbours.list[i];
-        if (n->id != c->config->sink && mh_neighbour_usable(n) && !is_shunned(c, n->id)) {
+        if (n->id != c->config->sink && mh_neighbour_usable(n) && !mh_is_shunned(&c->shunned, n->id, c->time)) {
             const struct mh_candidate candidate = {
                 n->id, {n->x_mm, n->y_mm, 0}, is_among(measurements, measured, n->id)};
             candidates[found++] = candidate;
@@ -363,7 +343,7 @@ static bool find_another(struct mh_cluster_node *c)
 {
     for (uint8_t i = 0; i < c->next.count; i++) {
         const struct mh_member member = c->next.members[i];
-        if (member.id != c->node->id && member.first <= 1 && !is_shunned(c, member.id)) {
+        if (member.id != c->node->id && member.first <= 1 && !mh_is_shunned(&c->shunned, member.id, c->time)) {
             c->next.head = member;
             c->next.count--;
             memmove(&c->next.members[i], &c->next.members[i + 1], (size_t)(c->next.count - i) * sizeof member);
@@ -376,7 +356,7 @@ static bool find_another(struct mh_cluster_node *c)
 void mh_cluster_part_refused(struct mh_cluster_node *c)
 {
     mh_cluster_note(&c->events.refused);
-    shun(c, c->next.head.id);
+    mh_shun(&c->shunned, c->next.head.id, c->time + MH_CLUSTER_SHUN_TIME);
     if (!find_another(c) || !offer(c)) {
         stay(c);
     }

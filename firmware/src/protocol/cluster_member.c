@@ -293,9 +293,7 @@ static void forget(struct mh_cluster_node *c)
     c->asked = c->asked && !is_forgotten(c, c->asked_for);
     c->followed.known = c->followed.known && !is_forgotten(c, c->followed.time);
     c->search_until = not_past(c, c->search_until);
-    for (uint8_t i = 0; i < c->shunned_count; i++) {
-        c->shunned[i].until = not_past(c, c->shunned[i].until);
-    }
+    mh_shunned_age(&c->shunned, c->time);
 }
 
 void mh_cluster_watch(struct mh_cluster_node *c)

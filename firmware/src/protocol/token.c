@@ -206,9 +206,7 @@ static void forget(struct mh_token_node *t)
     t->knows = t->knows && mh_ticks_between(t->of.heard, t->time) < MEMORY;
     t->asked = t->asked && mh_ticks_between(t->asked_for, t->time) < MEMORY;
     t->sampled = t->sampled && mh_ticks_between(t->measured.time, t->time) < MEMORY;
-    for (uint8_t i = 0; i < t->shunned_count; i++) {
-        t->shunned[i].until = not_past(t, t->shunned[i].until);
-    }
+    mh_shunned_age(&t->shunned, t->time);
 }
 
 static void say_hello(struct mh_token_node *t)
@@ -393,7 +391,7 @@ static void time_jumped(void *state, mh_tick now)
     t->set = 0;
     t->knows = t->asked = t->answers = t->sampled = t->handing = t->guarding = t->parcel.begun = false;
     t->guard = MH_BROADCAST;
-    t->shunned_count = t->shunned_next = 0;
+    t->shunned.count = t->shunned.next = 0;
     t->head_place = t->config->start_place;
     if (t->node->port->network(t->node->context, now, &t->time)) {
         come_up(t);

@@ -66,10 +66,7 @@ void mh_token_begin(struct mh_token_node *t)
 
 void mh_token_shun(struct mh_token_node *t, mh_node_id id)
 {
-    t->shunned[t->shunned_next].id = id;
-    t->shunned[t->shunned_next].until = t->time + MH_TOKEN_SHUNNED * t->config->interval;
-    t->shunned_next = (uint8_t)((t->shunned_next + 1) % MH_TOKEN_SHUNNED_MAX);
-    t->shunned_count = (uint8_t)(t->shunned_count + (t->shunned_count < MH_TOKEN_SHUNNED_MAX));
+    mh_shun(&t->shunned, id, t->time + MH_TOKEN_SHUNNED * t->config->interval);
     mh_vicinity_forget(&t->vicinity, id);
 }
 

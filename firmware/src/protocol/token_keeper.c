@@ -8,16 +8,6 @@
 
 /* ---- whom to ---- */
 
-static bool is_shunned(const struct mh_token_node *t, mh_node_id id)
-{
-    for (uint8_t i = 0; i < t->shunned_count; i++) {
-        if (t->shunned[i].id == id && mh_tick_before(t->time, t->shunned[i].until)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Where the tracker does not mind: the nearer to the estimate the better. */
 static mh_real score(const struct mh_token_node *t, const struct mh_neighbour *n, const struct mh_place *estimated)
 {
@@ -41,7 +31,7 @@ static const struct mh_neighbour *best(const struct mh_token_node *t)
     }
     for (uint8_t i = 0; i < t->neighbours.count; i++) {
         const struct mh_neighbour *n = &t->neighbours.list[i];
-        if (n->id == t->config->sink || !mh_neighbour_usable(n) || is_shunned(t, n->id)) {
+        if (n->id == t->config->sink || !mh_neighbour_usable(n) || mh_is_shunned(&t->shunned, n->id, t->time)) {
             continue;
         }
         const mh_real value = score(t, n, &estimated);

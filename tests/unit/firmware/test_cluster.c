@@ -871,15 +871,13 @@ static void what_is_long_past_does_not_come_back(void)
     const mh_tick month = 30u * 86400000u, then = month + LATER;
     pass(LATER - 1);
     hear_ask(LATER + 4, LATER, HEAD, 3, false);
-    state.shunned[0].id = NEXT;
-    state.shunned[0].until = LATER + MH_CLUSTER_SHUN_TIME;
-    state.shunned_count = 1;
+    mh_shun(&state.shunned, NEXT, LATER + MH_CLUSTER_SHUN_TIME);
     pass_days(LATER, 30);
     pass(then + T);
     const unsigned before = saw.sensed;
     pass(then + T + 5 * config.watch_period); /* it watches, and only when it is its turn */
     TEST_ASSERT_EQUAL(before + 5, saw.sensed);
-    TEST_ASSERT_TRUE(mh_ticks_between(state.shunned[0].until, state.time) >= 0);
+    TEST_ASSERT_TRUE(mh_ticks_between(state.shunned.list[0].until, state.time) >= 0);
 
     come_up(SINK);
     pass(LATER + T);
