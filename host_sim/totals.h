@@ -80,6 +80,7 @@
     X(FUSED, "fused", c->protocol.fixed.fused, "positions of the fusion centre")                                                                 \
     X(CORRECTED, "corrected", c->protocol.fixed.corrected, "times that a cluster's track took what the centre fed back")                         \
     X(UNCORRECTED, "uncorrected", c->protocol.fixed.uncorrected, "times that it did not, because it was too old")                                \
+    X(SAMPLES_MISDIRECTED, "samples_misdirected", c->protocol.fixed.misdirected, "samples that came to who was head before")                       \
     X(HEADS_TAKEN_OVER, "heads_taken_over", c->protocol.fixed.taken_over, "fixed clusters: times that a member led because the head was silent") \
     X(PCRB_M, "pcrb_m", of_bounds(c, c->bounds.pcrb_m), "ranged walk, or fixed clusters: the posterior Cramer-Rao bound of position_rmse_m")              \
     X(CCRB_M, "ccrb_m", of_bounds(c, c->bounds.ccrb_m), "fixed clusters: the bound along the run's own path") \
