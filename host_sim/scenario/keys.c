@@ -176,7 +176,7 @@ const struct scenario_key scenario_keys[] = {
     {"tracker.learn_s", KEY_NUMBER, AT(tracker.learn_s), "3600", 0, 1e6, NULL, "gas with winds: at first only backgrounds are learned"},
     {"tracker.memory_s", KEY_NUMBER, AT(tracker.memory_s), "14400", 0, 1e6, NULL, "gas with winds: readings are forgotten with this time constant; 0: never"},
     {"tracker.correlation_s", KEY_NUMBER, AT(tracker.correlation_s), "600", 0, 1e6, NULL, "gas with winds: for so long the plume model errs alike"},
-    {"tracker.place_sd_m", KEY_NUMBER, AT(tracker.place_sd_m), "3", 0, 1000, NULL, "gas with winds: the leak is off its candidate by this much (standard deviation)"},
+    {"tracker.place_sd_m", KEY_NUMBER, AT(tracker.place_sd_m), "3", 0.01, 1000, NULL, "gas with winds: the leak is off its candidate by this much (standard deviation)"},
     {"tracker.window_s", KEY_NUMBER, AT(tracker.window_s), "0", 0, 3600, NULL, "reports are waited for this long after their sample; 0 for half the interval"},
     {"tracker.prior_x_m", KEY_NUMBER, AT(tracker.prior_x_m), "0", -1e5, 1e5, NULL, "gas: the source is expected about here; with prior_y_m both 0 for the middle of the field"},
     {"tracker.prior_y_m", KEY_NUMBER, AT(tracker.prior_y_m), "0", -1e5, 1e5, NULL, ""},

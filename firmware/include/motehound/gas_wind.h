@@ -23,8 +23,8 @@
 struct mh_gas_wind_config {
     struct mh_place places[MH_LEAK_PLACES_MAX]; /* where the leak can be */
     uint16_t place_count;                       /* 1 to MH_LEAK_PLACES_MAX */
-    mh_real place_sd_m;       /* the leak is off its place by this much, 0 to 1,000 m; of the covariance. Nominal 3 */
-    mh_real mixing_m;         /* K over the wind's speed, 1e-3 to 1e3 m. Nominal 0.3 */
+    mh_real place_sd_m; /* the leak is off its place by this much, 0.01 to 1,000 m; of the covariance. Nominal 3 */
+    mh_real mixing_m;   /* K over the wind's speed, 1e-3 to 1e3 m. Nominal 0.3 */
     mh_real direction_sd_rad; /* of the plume's axis about the measured wind, 0 to 1. Nominal 0.2 */
     mh_real unit;             /* concentration (plume.h) that is 1 in the unit of the sensors, > 0. Nominal 1 */
     mh_real correlation;      /* readings that tell as much as one, 1 to 1e4 (plume_regression.h). Nominal 10 */

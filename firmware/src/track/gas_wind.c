@@ -23,7 +23,7 @@ static bool valid(const struct mh_gas_wind_config *config)
     for (uint16_t i = 0; places && i < config->place_count; i++) {
         places = mh_coordinate_valid(config->places[i].x_mm) && mh_coordinate_valid(config->places[i].y_mm);
     }
-    return places && mh_within(config->place_sd_m, 0, 1e3f) && mh_within(config->mixing_m, 1e-3f, 1e3f) &&
+    return places && mh_within(config->place_sd_m, 0.01f, 1e3f) && mh_within(config->mixing_m, 1e-3f, 1e3f) &&
            mh_within(config->direction_sd_rad, 0, 1.0f) && mh_within(config->unit, 1e-9f, 1e9f) &&
            mh_within(config->correlation, 1.0f, 1e4f) && mh_within(config->background.quantile, 0.01f, 0.5f) &&
            mh_within(config->background.step, 1e-9f, 1e4f) && config->learn <= 2073600000u &&

@@ -224,7 +224,7 @@ static void refuses_what_is_out_of_range(void)
     refused();
     config.unit = 0;
     refused();
-    config.place_sd_m = -1.0f;
+    config.place_sd_m = 0; /* its covariance would be none */
     refused();
     config.correlation = 0.5f;
     refused();
