@@ -19,8 +19,8 @@ static double apart_m(const struct recorded_node *a, const struct recorded_node 
 static bool is_connected(const struct deployment *deployment, double range_m)
 {
     const size_t count = deployment->count;
-    uint32_t *waiting = malloc(count * sizeof *waiting);
-    bool *reached = calloc(count, sizeof *reached);
+    uint32_t *waiting = calloc(count + 1, sizeof *waiting);
+    bool *reached = calloc(count + 1, sizeof *reached);
     size_t found = 0;
     if (waiting && reached && count > 0) {
         waiting[found++] = 0;
@@ -65,7 +65,7 @@ int campaign_start(const struct scenario *scenario, uint64_t seed, const struct 
         *start = found < deployment->count ? (uint32_t)found : 0;
         return 0;
     }
-    uint32_t *far = malloc(deployment->count * sizeof *far);
+    uint32_t *far = calloc(deployment->count + starts, sizeof *far);
     size_t count = 0;
     if (!far) {
         return -1;

@@ -61,7 +61,8 @@ static void readings_fluctuate_as_they_are_to(void)
     const double sd = hypot(0.3 * mean, gas.noise_ppm / gas.unit_ppm);
     double sum = 0, squares = 0, product = 0, before = 0;
     for (uint32_t i = 0; i < READINGS; i++) {
-        const double off = gas_reading(&gas, source, 5.0 * (i / 200), i % 200, place) - mean;
+        const uint32_t instant = i / 200;
+        const double off = gas_reading(&gas, source, 5.0 * instant, i % 200, place) - mean;
         sum += off;
         squares += off * off;
         product += off * before;

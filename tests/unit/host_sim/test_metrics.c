@@ -87,6 +87,8 @@ static void run_of(int instants, void (*run)(const struct observer *observer, in
         .clock_error_p99_ms = 0.75};
     TEST_ASSERT_EQUAL_INT(0, bus_open(&bus, 0, NULL, NULL, 0, error, sizeof error));
     TEST_ASSERT_EQUAL_INT(0, recorder_subscribe(&recorder, bus.lcm));
+    bus.run = 1; /* whose motes are told only where they count */
+    bus.searches = scenario.sensor.quantity == QUANTITY_GAS;
     const struct observer observer = bus_observer(&bus);
     bus_begin(&bus, 5, "a scenario", "1.2.3");
     for (int i = 0; i < instants; i++) {
@@ -408,6 +410,60 @@ static void pooled_errors_weigh_estimates_not_runs(void)
     errors_free(&pooled);
 }
 
+/* Six heads in a row along x, each heard with the two nodes beyond it; the leak is at the origin and releases 30. Errors of 80, 9, 30, 8, 4 and 3 m, the
+ * last three calm; the rate is 33 in the end. */
+static void a_search(const struct observer *observer, int i)
+{
+    static const float off_m[] = {80, 9, 30, 8, 4, 3};
+    const struct truth truth = {.time_s = 5.0 * i, .present = true, .rate = 30};
+    const mh_node_id head = (mh_node_id)i, members[] = {head + 1, head + 2};
+    const struct mh_estimate estimate = {.position = {off_m[i], 0},
+                                         .covariance = {9, 0, 9},
+                                         .covariance_more = {0, 0, 9},
+                                         .states = 3,
+                                         .rate = 33,
+                                         .flags = i >= 3 ? MH_ESTIMATE_CALM : 0};
+    for (mh_node_id node = 0; i == 0 && node < 8; node++) {
+        const struct mh_place place = {100000 - 10000 * (int32_t)node, 0, 0};
+        observer->node(observer->context, node, &place);
+    }
+    observer->truth(observer->context, &truth);
+    observer->cluster(observer->context, truth.time_s, 0, head, members, 2, i > 0);
+    observer->estimate(observer->context, truth.time_s, head, &estimate, &truth, &truth);
+}
+
+static void a_search_is_judged_by_its_end(void)
+{
+    scenario.sensor.quantity = QUANTITY_GAS;
+    run_of(6, a_search);
+    NEAR(1, values[METRIC_SUCCESS_50M]);
+    NEAR(1, values[METRIC_SUCCESS_10M]);
+    NEAR(1, values[METRIC_CONVERGED]);
+    NEAR(0, values[METRIC_CONVERGED_WRONG]);
+    NEAR(6, values[METRIC_HOPS]);
+    NEAR(8, values[METRIC_SENSORS_USED]);
+    NEAR(6, values[METRIC_SENSORS_TO_10M]); /* at the fourth head */
+    NEAR(3, values[METRIC_POSITION_ERROR_MEDIAN_M]);
+    NEAR(0.1, values[METRIC_RATE_ERROR_MEDIAN]);
+    NEAR(2, values[METRIC_NEES_MEDIAN]); /* (3^2 + 3^2) / 9 */
+    TEST_ASSERT_TRUE(values[METRIC_CRLB_M] > 0 && values[METRIC_CRLB_M] < 200);
+    NEAR(fmin(3 / values[METRIC_CRLB_M], 5), values[METRIC_ERROR_OVER_CRLB]);
+    tearDown();
+    setUp();
+    scenario.sensor.quantity = QUANTITY_GAS;
+    run_of(1, a_search); /* broken off, and far away */
+    NEAR(0, values[METRIC_SUCCESS_50M]);
+    NEAR(0, values[METRIC_CONVERGED]);
+    NEAR(3, values[METRIC_SENSORS_USED]);
+    TEST_ASSERT_TRUE(isnan(values[METRIC_SENSORS_TO_10M]) && isnan(values[METRIC_ERROR_OVER_CRLB]));
+    tearDown();
+    setUp();
+    scenario.sensor.quantity = QUANTITY_GAS;
+    scenario.protocol.calm = 1;
+    run_of(4, a_search);
+    NEAR(1, values[METRIC_SUCCESS_50M]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -425,6 +481,7 @@ int main(void)
     RUN_TEST(a_gap_may_be_at_either_end);
     RUN_TEST(clusters_are_counted_where_there_are_any);
     RUN_TEST(pooled_errors_weigh_estimates_not_runs);
+    RUN_TEST(a_search_is_judged_by_its_end);
     port_exit(UNITY_END() > 0);
     return 0;
 }
