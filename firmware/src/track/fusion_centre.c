@@ -256,7 +256,7 @@ static enum mh_status join_split(struct mh_fusion_centre *centre, mh_tick time, 
         return MH_NONE;
     }
     *fused = joined.dependent;
-    for (uint_fast8_t i = 0; i < PACKED; i++) {
+    for (int i = 0; i < PACKED; i++) {
         fused->P[i] += joined.independent[i];
     }
     return mh_gaussian_settle(fused);

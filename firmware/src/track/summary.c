@@ -38,7 +38,7 @@ static bool get(const uint8_t **at, mh_real *values, uint_fast8_t count)
 bool mh_summary_sane(const struct mh_gaussian *state)
 {
     bool sane = true;
-    for (uint_fast8_t i = 0; i < N; i++) {
+    for (int i = 0; i < N; i++) {
         const mh_real most = i % 2 == 0 ? MH_SUMMARY_FARTHEST_M : MH_SUMMARY_FASTEST_MPS;
         sane = sane && mh_within(state->x[i], -most, most) && state->P[MH_PACKED(i, i)] <= mh_squared(most);
     }
@@ -84,7 +84,7 @@ static bool read_split(struct mh_split_gaussian *split, const uint8_t *at)
         return false;
     }
     struct mh_gaussian whole = split->dependent;
-    for (uint_fast8_t i = 0; i < PACKED; i++) {
+    for (int i = 0; i < PACKED; i++) {
         whole.P[i] += split->independent[i];
     }
     return mh_summary_sane(&whole);
