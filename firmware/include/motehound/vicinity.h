@@ -16,7 +16,7 @@ struct mh_vicinity {
     struct mh_vicinity_entry {
         mh_node_id id;
         int32_t x_mm, y_mm;
-        uint16_t heard_at;   /* units of 256 ticks */
+        mh_coarse heard_at;
     } list[MH_VICINITY_MAX]; /* by identifier */
 };
 

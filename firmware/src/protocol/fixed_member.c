@@ -20,12 +20,12 @@ static void wait_for_head(struct mh_fixed *f)
     mh_fixed_set(f, MH_FIXED_WATCH, f->time + (f->config->patience + before(f)) * f->config->report_interval);
 }
 
-static mh_tick silence(const struct mh_fixed *f) { return f->time - f->said; }
+static int32_t silence(const struct mh_fixed *f) { return mh_ticks_between(f->said, f->time); }
 
 /* The head has not said that it leads for so long that another that says so is believed. */
 static bool is_silent(const struct mh_fixed *f)
 {
-    return !f->heard || silence(f) >= (f->config->patience - 1u) * f->config->report_interval;
+    return !f->heard || silence(f) >= (int32_t)((f->config->patience - 1u) * f->config->report_interval);
 }
 
 static void follow(struct mh_fixed *f, uint8_t head, const mh_lead_t *said)
@@ -130,7 +130,7 @@ void mh_fixed_hear_lead(struct mh_fixed *f, const mh_lead_t *said)
 void mh_fixed_report_taken(struct mh_fixed *f, mh_node_id by)
 {
     if (f->role == MH_FIXED_MEMBER && by == mh_fixed_head(f)->id &&
-        silence(f) < (mh_tick)BELIEVED * f->config->patience * f->config->report_interval) {
+        silence(f) < (int32_t)(BELIEVED * f->config->report_interval * f->config->patience)) {
         wait_for_head(f);
     }
 }

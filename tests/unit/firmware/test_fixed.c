@@ -372,6 +372,9 @@ static void who_says_that_it_leads_is_believed_rather_than_who_acknowledges(void
     }
     hear_lead(5 * T, 13, 4 * T, 0);
     TEST_ASSERT_EQUAL(2, state.head);
+    saw.network_ahead = (mh_tick)-2; /* the network's time is corrected a little */
+    hear_lead(5 * T, 11, 5 * T, 0);
+    TEST_ASSERT_EQUAL(2, state.head);
 }
 
 static void hear_sample(mh_tick now, mh_node_id origin)
