@@ -84,6 +84,9 @@ enum metric {
 
 enum { METRIC_ERRORS_COUNT = METRIC_TRACKED_SHARE, METRIC_FIRST_TOTAL = METRIC_COUNT - TOTAL_COUNT };
 
+/* True of the error metrics that are defined over many runs, so that a mean of what single runs have would be another thing. */
+bool metric_is_over_runs(enum metric metric);
+
 extern const char *const metric_names[METRIC_COUNT];
 extern const char *const metric_meanings[METRIC_COUNT];
 

@@ -206,8 +206,13 @@ int results_add(struct results *results, uint64_t seed, const struct scenario *s
 bool results_statistics(struct results *results, enum metric metric, struct metric_statistics *statistics)
 {
     struct samples *samples = &results->metrics[metric];
+    double pooled[METRIC_ERRORS_COUNT];
+    const bool over_runs = metric_is_over_runs(metric);
+    if (over_runs) {
+        results_pooled(results, pooled);
+    }
     *statistics = (struct metric_statistics){
-        .mean = samples_mean(samples),
+        .mean = over_runs ? pooled[metric] : samples_mean(samples),
         .sd = samples_sd(samples),
         .median = samples_quantile(samples, 0.5),
         .p95 = samples_quantile(samples, 0.95),

@@ -3,7 +3,7 @@
  *
  * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the
  * "mean", "std" (divisor n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics
- * over all estimates of all runs together. track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
+ * over all estimates of all runs together, which is also the "mean" of a metric that is defined over runs (metrics.h). track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
  * coordinate, sqrt((cov_xx + cov_yy) / 2); sink_x_m, sink_y_m are what the sink of clusters had at that instant. Fields that do not apply are empty. nodes.csv: where the motes of the first
  * run stand. local.csv: of fixed clusters, one row for whatever each of them had by itself when it told the sink. scenario.json: the scenario as it was simulated; none for a recording. */
 #ifndef MOTEHOUND_SIM_RESULTS_H
@@ -50,7 +50,7 @@ int results_commit(struct results *results, const char *version, char *error, si
 /* Leave nothing behind. Frees `results`; harmless after results_commit. */
 void results_discard(struct results *results);
 
-/* Statistics of a metric over the runs added so far; false if it applies to none. */
+/* Statistics of a metric over the runs added so far, its mean as in summary.json; false if it applies to none. */
 struct metric_statistics {
     double mean, sd, median, p95;
     size_t n;

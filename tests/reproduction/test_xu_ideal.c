@@ -30,6 +30,7 @@ static void covariance_intersection(void)
     const struct figures ci = nominal;
     xu_near(&ci, METRIC_POSITION_RMSE_M, 0.0545, 0.0025);
     xu_near(&ci, METRIC_SMSE_M, 5.64, 0.25);
+    expect_near("its mean in summary.json", ci.mean[METRIC_SMSE_M], ci.pooled[METRIC_SMSE_M], 1e-12);
     xu_near(&ci, METRIC_ANEES, 2.43, 0.15);
     xu_near(&ci, METRIC_CLAIMED_OVER_RMSE, 1.54, 0.06);
     expect_at_most("after 10 s, at any time", ci.pooled[METRIC_POSITION_RMSE_WORST_M], 0.1);
