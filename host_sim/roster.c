@@ -130,16 +130,22 @@ void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place p
     }
 }
 
-/* Of a search. */
-static int tell_start(struct roster *roster, const struct scenario *scenario)
+void mote_kit_tell_start(struct mote_kit *kit, mh_node_id start, struct mh_place place)
+{
+    if (kit->protocol.protocol == &mh_protocol_token) {
+        kit->protocol.config.token.start = start;
+        kit->protocol.config.token.start_place = place;
+    }
+}
+
+static int tell_start(struct roster *roster, const struct scenario *scenario, char *error, size_t error_size)
 {
     uint32_t start;
-    if (campaign_start(scenario, roster->seed, &roster->deployment, &start)) {
+    if (campaign_start(scenario, roster->seed, &roster->deployment, &start, error, error_size)) {
         return -1;
     }
     const struct recorded_node *node = &roster->deployment.nodes[start];
-    roster->kit.protocol.config.token.start = node->id;
-    roster->kit.protocol.config.token.start_place = place_from_metres(node->x_m, node->y_m, node->z_m);
+    mote_kit_tell_start(&roster->kit, node->id, place_from_metres(node->x_m, node->y_m, node->z_m));
     return 0;
 }
 
@@ -157,8 +163,7 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     roster->sink_x_m = field.sink_x_m;
     roster->sink_y_m = field.sink_y_m;
     mote_kit_tell_sink(&roster->kit, roster->sink_id, place_from_metres(field.sink_x_m, field.sink_y_m, 0));
-    if (roster->kit.protocol.protocol == &mh_protocol_token && tell_start(roster, scenario)) {
-        snprintf(error, error_size, "out of memory");
+    if (roster->kit.protocol.protocol == &mh_protocol_token && tell_start(roster, scenario, error, error_size)) {
         return -1;
     }
     return 0;

@@ -40,6 +40,9 @@ void mote_kit_complete(struct mote_kit *kit, const struct scenario *scenario, mh
 /* Reports go to mote `sink` at `place`, which some protocols want to know beforehand. */
 void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place place);
 
+/* Mote `start` at `place` begins the search, if it is one. */
+void mote_kit_tell_start(struct mote_kit *kit, mh_node_id start, struct mh_place place);
+
 /* Mote `id` at `place`: the sink, or a node with a sensor; its clock is ideal. It points into the kit. */
 struct host_mote mote_kit_mote(const struct mote_kit *kit, mh_node_id id, struct mh_place place, bool is_sink);
 

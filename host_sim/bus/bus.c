@@ -72,11 +72,8 @@ static void publish(struct bus *bus, const char *channel, double time_s, void *b
     bus->failed = bus->failed || !sound;
 }
 
-/* The longest message: the totals, whose names are short, or a cluster; all other fields are fixed. */
-enum {
-    CLUSTER_MEMBERS_MAX = MH_CLUSTER_MAX > MH_FORM_MEMBERS ? MH_CLUSTER_MAX : MH_FORM_MEMBERS,
-    ENCODED_MAX = 1024 + 64 * TOTAL_COUNT + 4 * CLUSTER_MEMBERS_MAX
-};
+/* The longest message but for a cluster: the totals, whose names are short; all other fields are fixed. */
+enum { ENCODED_MAX = 1024 + 64 * TOTAL_COUNT };
 
 /* Encode a message of a generated type and publish it at `at_s`. */
 #define PUBLISH(bus, channel, type, message, at_s)                                                                     \
@@ -276,14 +273,7 @@ static void on_cluster(void *context, double time_s, uint32_t track, mh_node_id 
                        size_t count, bool is_new)
 {
     struct bus *bus = context;
-    int32_t ids[CLUSTER_MEMBERS_MAX];
-    if (count > CLUSTER_MEMBERS_MAX) {
-        bus->failed = true;
-        return;
-    }
-    for (size_t i = 0; i < count; i++) {
-        ids[i] = (int32_t)members[i];
-    }
+    int32_t *ids = malloc((count + 1) * sizeof *ids);
     const motehound_cluster_t message = {.time_s = time_s,
                                          .run = bus->run,
                                          .track = (int32_t)track,
@@ -291,7 +281,18 @@ static void on_cluster(void *context, double time_s, uint32_t track, mh_node_id 
                                          .is_new = is_new,
                                          .count = (int32_t)count,
                                          .members = ids};
-    PUBLISH(bus, BUS_CLUSTER, motehound_cluster_t, message, time_s);
+    const int size = motehound_cluster_t_encoded_size(&message);
+    uint8_t *encoded = malloc((size_t)size);
+    if (ids != NULL && encoded != NULL) {
+        for (size_t i = 0; i < count; i++) {
+            ids[i] = (int32_t)members[i];
+        }
+        publish(bus, BUS_CLUSTER, time_s, encoded, motehound_cluster_t_encode(encoded, 0, size, &message));
+    } else {
+        bus->failed = true;
+    }
+    free(encoded);
+    free(ids);
 }
 
 static void on_mote(void *context, double time_s, mh_node_id id, const struct mote_state *state)

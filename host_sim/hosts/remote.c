@@ -1,6 +1,7 @@
 #include "hosts/remote.h"
 
 #include "engine/arena.h"
+#include "motehound/token.h"
 #include "scenario/text.h"
 
 #include <string.h>
@@ -125,6 +126,8 @@ static int assign_some(struct remote *remote, bool *more, char *error, size_t er
 
 static int assign(struct remote *remote, char *error, size_t error_size)
 {
+    const struct mh_token_config *token = remote->sink.protocol_config, none = {.start = 0};
+    const struct mh_token_config *search = remote->sink.protocol == &mh_protocol_token ? token : &none;
     for (unsigned w = 0; w < remote->workers; w++) {
         motehound_worker_assign_t message = {.scenario = (char *)remote->scenario,
                                              .seed = (int64_t)remote->seed,
@@ -132,7 +135,11 @@ static int assign(struct remote *remote, char *error, size_t error_size)
                                              .sink = (int32_t)remote->sink.id,
                                              .sink_x_mm = remote->sink.place.x_mm,
                                              .sink_y_mm = remote->sink.place.y_mm,
-                                             .sink_z_mm = remote->sink.place.z_mm};
+                                             .sink_z_mm = remote->sink.place.z_mm,
+                                             .start = (int32_t)search->start,
+                                             .start_x_mm = search->start_place.x_mm,
+                                             .start_y_mm = search->start_place.y_mm,
+                                             .start_z_mm = search->start_place.z_mm};
         REQUEST(remote, w, WORKER_ASSIGN, assign, message, error, error_size);
     }
     if (await(remote, error, error_size) != 0) {

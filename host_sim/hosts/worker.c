@@ -71,6 +71,8 @@ static int make_motes(struct motes *motes, const motehound_worker_assign_t *mess
     tracker_seed(&motes->kit.tracker, (uint32_t)message->seed);
     mote_kit_tell_sink(&motes->kit, (mh_node_id)message->sink,
                        (struct mh_place){message->sink_x_mm, message->sink_y_mm, message->sink_z_mm});
+    mote_kit_tell_start(&motes->kit, (mh_node_id)message->start,
+                        (struct mh_place){message->start_x_mm, message->start_y_mm, message->start_z_mm});
     motes->count = count;
     motes->numbers = malloc((count + 1) * sizeof *motes->numbers);
     motes->order = malloc((count + 1) * sizeof *motes->order);

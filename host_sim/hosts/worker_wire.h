@@ -90,7 +90,7 @@ const char *worker_channel(int64_t worker, enum worker_request request, char cha
 
 WORKER_CODEC(call, "84s")
 WORKER_CODEC(join, "88ss")
-WORKER_CODEC(assign, "888s844444")
+WORKER_CODEC(assign, "888s8444444444")
 WORKER_CODEC(motes, "888[4444418888]")
 WORKER_CODEC(window, "8888[8141[4]{1}]")
 WORKER_CODEC(count, "888")

@@ -199,7 +199,7 @@ static int make_world(struct run *run, uint64_t seed, char *error, size_t error_
     run->members = calloc(nodes, sizeof *run->members);
     run->places = calloc(nodes, sizeof *run->places);
     if (!run->state || !run->heard || !run->members || !run->places || make_network(run) ||
-        campaign_start(scenario, seed, &run->deployment, &run->head)) {
+        campaign_start(scenario, seed, &run->deployment, &run->head, error, error_size)) {
         return -1;
     }
     if (tracker->init(run->state, &run->tracker.config, run->interval) != MH_OK) {

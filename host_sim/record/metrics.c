@@ -145,7 +145,7 @@ static int add_search(struct errors *errors, const struct search *search, const 
     const double ratio = fmin(search->error_m / search->crlb_m, largest_ratio);
     const bool judged = search->converged && search->error_m < success_m && !isnan(search->crlb_m);
     const bool sound = add_track(errors, last) == 0 && samples_add(&errors->found, search->error_m) == 0 &&
-                       samples_add(&errors->rate, search->rate_error) == 0 &&
+                       add(&errors->rate, search->rate_error) == 0 &&
                        (!judged || samples_add(&errors->efficiency, ratio) == 0);
     return sound ? 0 : -1;
 }
@@ -360,9 +360,11 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
         }
     }
     const bool truth = recorder->samples > 0;
+    const bool follows =
+        truth && strcmp(scenario->network.protocol, "token") != 0; /* a search ends when it has found */
     metrics_of_errors(errors, values);
-    values[METRIC_TRACKED_SHARE] = truth ? (double)tracked / (double)recorder->samples : (double)NAN;
-    values[METRIC_TRACK_LOST] = truth ? lost(recorder, scenario) : (double)NAN;
+    values[METRIC_TRACKED_SHARE] = follows ? (double)tracked / (double)recorder->samples : (double)NAN;
+    values[METRIC_TRACK_LOST] = follows ? lost(recorder, scenario) : (double)NAN;
     const struct coverage coverage = coverage_of(recorder);
     const bool stated = coverage.positions > 0;
     values[METRIC_COVERED_SHARE] = stated ? (double)coverage.covered / (double)coverage.positions : (double)NAN;

@@ -16,7 +16,7 @@
 
 static void put_number(FILE *file, double value)
 {
-    if (isnan(value)) {
+    if (!isfinite(value)) {
         fputc(',', file);
     } else {
         fprintf(file, ",%.*g", DIGITS, value == 0 ? 0.0 : value); /* no -0 */
@@ -226,6 +226,9 @@ void results_pooled(struct results *results, double values[METRIC_ERRORS_COUNT])
     metrics_of_errors(&results->pooled, values);
 }
 
+/* JSON has no infinity. */
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
 static json_t *summary(struct results *results, const char *version)
 {
     json_t *metrics = json_object(), *pooled = json_object();
@@ -234,15 +237,16 @@ static json_t *summary(struct results *results, const char *version)
     for (size_t i = 0; i < METRIC_COUNT; i++) {
         struct metric_statistics s;
         if (results_statistics(results, (enum metric)i, &s)) {
-            status |= json_object_set_new(metrics, metric_names[i],
-                                          json_pack("{s:f, s:f, s:f, s:f, s:I}", "mean", s.mean, "std", s.sd, "median",
-                                                    s.median, "p95", s.p95, "n", (json_int_t)s.n));
+            status |=
+                json_object_set_new(metrics, metric_names[i],
+                                    json_pack("{s:o, s:o, s:o, s:o, s:I}", "mean", number(s.mean), "std", number(s.sd),
+                                              "median", number(s.median), "p95", number(s.p95), "n", (json_int_t)s.n));
         }
     }
     results_pooled(results, values);
     for (size_t i = 0; i < METRIC_ERRORS_COUNT; i++) {
         if (!isnan(values[i])) {
-            status |= json_object_set_new(pooled, metric_names[i], json_real(values[i]));
+            status |= json_object_set_new(pooled, metric_names[i], number(values[i]));
         }
     }
     json_t *whole = json_pack("{s:s, s:I, s:I, s:s, s:o, s:o}", "scenario", results->scenario_name, "seed",

@@ -69,7 +69,7 @@ static void follow(const struct recorder *recorder, const struct scenario *scena
     if (gas.noise_ppm > 0) {
         const struct leak_bound bound = leak_bound(&information);
         search->crlb_m = bound.position_m;
-        search->rate_crlb = bound.rate / gas.rate_mlps;
+        search->rate_crlb = gas.rate_mlps > 0 ? bound.rate / gas.rate_mlps : (double)NAN;
     }
 }
 
@@ -87,7 +87,7 @@ struct search search_of(const struct recorder *recorder, const struct scenario *
     if (count > 0) {
         const motehound_track_t *last = &recorder->tracks[count - 1];
         search.error_m = error_of(last);
-        search.rate_error = fabs(last->rate - last->true_rate) / last->true_rate;
+        search.rate_error = last->true_rate > 0 ? fabs(last->rate - last->true_rate) / last->true_rate : none;
     }
     follow(recorder, scenario, &search);
     return search;

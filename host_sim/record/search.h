@@ -8,7 +8,7 @@
 struct search {
     bool converged;           /* the estimates of the last protocol.calm heads were calm */
     double error_m;           /* of the last estimate, infinite where there is none; so below */
-    double rate_error;        /* as a share of the true rate */
+    double rate_error;        /* as a share of the true rate; NaN where nothing is released */
     double crlb_m, rate_crlb; /* of the samples that were heard; NaN without noise */
     size_t heads, sensors;    /* the latter each once */
     double sensors_to_10m;    /* heard when the error fell below 10 m for good; NaN: it never did */

@@ -3,6 +3,7 @@
 #include "world/recipe.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 uint64_t campaign_deployment_seed(const struct scenario *scenario, uint64_t seed)
@@ -57,17 +58,24 @@ bool campaign_suits(const struct scenario *scenario, const struct deployment *de
     return far >= scenario->network.starts && is_connected(deployment, scenario->radio.range_m);
 }
 
-int campaign_start(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment, uint32_t *start)
+int campaign_start(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment, uint32_t *start,
+                   char *error, size_t error_size)
 {
     const uint64_t starts = (uint64_t)scenario->network.starts;
     if (starts == 0) {
         const size_t found = deployment_find(deployment, (uint32_t)scenario->protocol.start);
-        *start = found < deployment->count ? (uint32_t)found : 0;
+        if (found == deployment->count) {
+            snprintf(error, error_size, "protocol.start: expected a node of the network, found %lld",
+                     (long long)scenario->protocol.start);
+            return -1;
+        }
+        *start = (uint32_t)found;
         return 0;
     }
     uint32_t *far = calloc(deployment->count + starts, sizeof *far);
     size_t count = 0;
     if (!far) {
+        snprintf(error, error_size, "out of memory");
         return -1;
     }
     for (uint32_t i = 0; i < deployment->count; i++) {

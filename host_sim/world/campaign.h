@@ -14,8 +14,8 @@ uint64_t campaign_deployment_seed(const struct scenario *scenario, uint64_t seed
 bool campaign_suits(const struct scenario *scenario, const struct deployment *deployment);
 
 /* The node at which run `seed` begins, an index: one of the far ones, drawn without replacement over the runs of a deployment; where
- * network.starts is 0, protocol.start, and 0 if there is no such node. Returns 0, or -1 if there is no memory. */
-int campaign_start(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment,
-                   uint32_t *start);
+ * network.starts is 0, protocol.start. Returns 0, or -1 with one line in `error` where there is no such node or no memory. */
+int campaign_start(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment, uint32_t *start,
+                   char *error, size_t error_size);
 
 #endif

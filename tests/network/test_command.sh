@@ -128,6 +128,13 @@ grep -q '"sink_error_rs"' followed/summary.json || complain "nothing at the sink
 refused '^tracker.name: .luo' "$MOTEHOUND" run zhou_nominal --set tracker.name=luo
 refused 'network.ideal: expected false where there are faults' "$MOTEHOUND" run zhou_nominal --set faults.dead_share=0.1
 
+# searches: one that nothing can come of, clusters of more than any mote's neighbours, a start that is nowhere
+accepted "$MOTEHOUND" run zhang_a --set source.rate_mlps=0 --out searched
+grep -q '"rate_error_median"' searched/summary.json && complain "a relative error of no release"
+accepted "$MOTEHOUND" run zhang_a --set network.nodes=300 --set radio.range_m=700 --out searched
+accepted "$MOTEHOUND" run zhang_a --set network.starts=0 --set protocol.start=99 --out searched
+refused '^protocol.start: expected a node of the network, found 100$' "$MOTEHOUND" run zhang_a --set network.starts=0 --set protocol.start=100
+
 # the same bytes whatever the jobs, and for the same seeds whatever the runs before
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out one
 accepted "$MOTEHOUND" run luo_exp1 "${small[@]}" --set sensor.relative_noise=0.05 --runs 5 --seed 7 --log --out two --jobs 2

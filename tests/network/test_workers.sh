@@ -53,6 +53,12 @@ accepted "${particles[@]}" --out particles
 accepted "${particles[@]}" --out particles2 --bus "$bus" --workers 2
 same particles particles2
 
+# a search begins where the run says, wherever that mote lives
+search=("$MOTEHOUND" run zhang_real --set source.duration_s=30 --seed 3)
+accepted "${search[@]}" --out search
+accepted "${search[@]}" --out search2 --bus "$bus" --workers 2
+same search search2
+
 # a worker from elsewhere joins; it ends when the run does
 "$MOTEHOUND" worker --bus "$bus" 2>joined.txt & joined=$!
 accepted "${small[@]}" --out alone

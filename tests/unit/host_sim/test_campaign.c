@@ -56,7 +56,7 @@ static void deployments_are_connected_and_shared_by_ten_starts(void)
         for (uint64_t k = 0; k < 10; k++) {
             uint32_t start = UINT32_MAX;
             TEST_ASSERT_EQUAL_INT(0, deployment_make(&nodes, &scenario, 10 * d + k, error, sizeof error));
-            TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 10 * d + k, &nodes, &start));
+            TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 10 * d + k, &nodes, &start, error, sizeof error));
             TEST_ASSERT_TRUE(start < 100 && !begun[start]);
             TEST_ASSERT_TRUE(hypot(nodes.nodes[start].x_m - 50, nodes.nodes[start].y_m - 200) > 400);
             TEST_ASSERT_TRUE(k == 0 || fabs(nodes.nodes[0].x_m - x_m) < 1e-12);
@@ -77,8 +77,8 @@ static void starts_are_spread_over_all_far_nodes(void)
     for (uint64_t d = 0; d < 200; d++) {
         uint32_t start[2];
         TEST_ASSERT_EQUAL_INT(0, deployment_make(&nodes, &scenario, 2 * d, error, sizeof error));
-        TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 2 * d, &nodes, &start[0]));
-        TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 2 * d + 1, &nodes, &start[1]));
+        TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 2 * d, &nodes, &start[0], error, sizeof error));
+        TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 2 * d + 1, &nodes, &start[1], error, sizeof error));
         first_is_lower += start[0] < start[1];
         deployment_free(&nodes);
     }
@@ -96,8 +96,10 @@ static void impossible_ones_are_refused(void)
     TEST_ASSERT_EQUAL_INT(0, deployment_make(&nodes, &scenario, 0, error, sizeof error));
     uint32_t start;
     scenario.protocol.start = 17;
-    TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 0, &nodes, &start));
+    TEST_ASSERT_EQUAL_INT(0, campaign_start(&scenario, 0, &nodes, &start, error, sizeof error));
     TEST_ASSERT_EQUAL_UINT32(17, start);
+    scenario.protocol.start = 100;
+    TEST_ASSERT_EQUAL_INT(-1, campaign_start(&scenario, 0, &nodes, &start, error, sizeof error));
 }
 
 int main(void)
