@@ -87,6 +87,8 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
     mote_kit_complete(kit, scenario, 0);
     if (kit->protocol.fixed) {
         centre_choose(scenario, &kit->centre);
+    }
+    if (kit->protocol.own_rates) {
         kit->head.lateness = kit->tracker.config.cv.lag;
     }
     if (kit->protocol.in_turns) {

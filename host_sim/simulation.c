@@ -52,13 +52,18 @@ static struct truth truth_at(const struct run *run, double time_s)
     return truth;
 }
 
-/* A head of fixed clusters has an estimate at each instant, but tells the sink of some. */
+/* The heads of fixed clusters have an estimate at each instant; told are those of a report interval, and not the start. */
+static bool is_reported(const struct run *run, const struct mh_estimate *estimate)
+{
+    const mh_tick interval = (mh_tick)lround(run->scenario->fusion.report_s * MH_TICKS_PER_S);
+    return estimate->time > 0 && estimate->time % interval == 0;
+}
+
 static void report_local(const struct run *run, uint32_t mote, double now_s, double time_s,
                          const struct mh_estimate *estimate)
 {
     const struct truth truth = truth_at(run, time_s);
-    const mh_tick interval = run->roster.kit.protocol.config.fixed.report_interval;
-    if (run->observer->local && estimate->time % interval == 0) {
+    if (run->observer->local && is_reported(run, estimate)) {
         const uint8_t cluster = (uint8_t)clustered_node(run->scenario, mote).cluster;
         run->observer->local(run->observer->context, now_s, cluster, roster_id(&run->roster, mote), estimate, &truth);
     }
@@ -75,7 +80,7 @@ static void report(void *context, uint32_t mote, double now_s, double time_s, co
             const struct truth at_time = truth_at(run, time_s);
             run->observer->sink(run->observer->context, now_s, estimate, &at_time);
         }
-    } else if (run->observer->estimate) {
+    } else if (run->observer->estimate && (!run->roster.kit.protocol.own_rates || is_reported(run, estimate))) {
         const struct truth at_time = truth_at(run, time_s), at_arrival = truth_at(run, time_s - (double)estimate->age);
         run->observer->estimate(run->observer->context, now_s, roster_id(&run->roster, mote), estimate, &at_time,
                                 &at_arrival);
@@ -130,9 +135,9 @@ static void sample_alone(struct run *run, uint64_t instant, double time_s, uint3
 static void sample_each(struct run *run, uint64_t instant, double time_s)
 {
     const struct point source = trajectory_position(&run->field.trajectory, time_s);
-    const bool fixed = run->roster.kit.protocol.fixed;
+    const bool own_rates = run->roster.kit.protocol.own_rates;
     for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
-        if (!fixed || (instant > 0 && instant % clustered_node(run->scenario, i).period == 0)) {
+        if (!own_rates || (instant > 0 && instant % clustered_node(run->scenario, i).period == 0)) {
             sample_alone(run, instant, time_s, i, source);
         }
     }

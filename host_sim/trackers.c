@@ -407,6 +407,11 @@ static void set_up_cluster(struct protocol_choice *choice, const struct scenario
 static void set_up_fixed(struct protocol_choice *choice, const struct scenario *scenario)
 {
     struct mh_fixed_config *config = &choice->config.fixed;
+    choice->own_rates = true;
+    if (scenario->fusion.rule == MH_FUSION_CENTRAL) {
+        set_up_collection(choice, scenario); /* the clusters lead nothing */
+        return;
+    }
     choice->protocol = &mh_protocol_fixed;
     choice->fixed = true;
     mh_fixed_config_default(config);

@@ -56,8 +56,10 @@ struct protocol_choice {
     /* Each node with a sensor can be head, the sink is none, and sensors sample when they are asked; else the sink is the only head, and
      * sensors sample at every instant. */
     bool in_turns;
-    /* The nodes are heads likewise, each of a cluster of its own, but sensors sample at rates of their own; the sink has a centre. */
+    /* The nodes are heads likewise, each of a cluster of its own; the sink has a centre. */
     bool fixed;
+    /* Sensors sample at rates of their own: those of fixed clusters, also where the sink is the only head and has all their samples. */
+    bool own_rates;
     union {
         struct mh_collection_config collection;
         struct mh_geographic_collection_config geographic;

@@ -222,10 +222,6 @@ static int check_fixed(const struct scenario *scenario, const char *name, char *
         return fail(error, error_size, "%s: clusters.nodes: expected at most %d clusters for network.protocol fixed",
                     name, MH_FUSED_MAX);
     }
-    if (!scenario->network.ideal && scenario->fusion.rule == MH_FUSION_CENTRAL) {
-        return fail(error, error_size, "%s: fusion.rule: expected another than central unless network.ideal is true",
-                    name);
-    }
     if (!scenario->network.ideal && (scenario->fusion.report_loss > 0 || scenario->clusters.shared > 0)) {
         return fail(error, error_size,
                     "%s: fusion.report_loss, clusters.shared: expected 0 unless network.ideal is true", name);

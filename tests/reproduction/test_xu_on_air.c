@@ -39,6 +39,20 @@ static void without_loss_nothing_differs(void)
     }
 }
 
+/* All samples travel to the sink, which has the only track. */
+static void one_head_for_all(void)
+{
+    const struct figures air = run("radio.profile=ideal radio.loss=0 fusion.rule=central");
+    const struct figures ideal = run("network.ideal=true fusion.rule=central");
+    const struct figures lossy = run("fusion.rule=central");
+    expect_near("RMSE over the ideal network's", rmse(&air) / rmse(&ideal), 1, 1e-3);
+    expect_near("ANEES over the ideal network's", air.pooled[METRIC_ANEES] / ideal.pooled[METRIC_ANEES], 1, 1e-3);
+    expect_near("positions", air.mean[METRIC_ESTIMATES], REPORTS, 0);
+    expect_at_most("summaries", air.mean[METRIC_SUMMARIES], 0);
+    expect_near("RMSE with collisions and losses", rmse(&lossy) / rmse(&ideal), 1, 0.05);
+    expect_near("ANEES with collisions and losses", lossy.pooled[METRIC_ANEES], 4, 0.3);
+}
+
 /* Collisions, and 5 % of the frames lost. */
 static void over_the_air(void)
 {
@@ -56,6 +70,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(without_loss_nothing_differs);
+    RUN_TEST(one_head_for_all);
     RUN_TEST(over_the_air);
     port_exit(UNITY_END() > 0);
     return 0;

@@ -215,8 +215,7 @@ static void fixed_clusters_have_limits(void)
                                            {"fusion.report_s", "0.25"},
                                            {"sensor.noisy_detection", "true"},
                                            {"sensor.loss", "0.1"}};
-    static const char *const on_air[][2] = {
-        {"fusion.rule", "central"}, {"fusion.report_loss", "0.1"}, {"clusters.shared", "1"}};
+    static const char *const on_air[][2] = {{"fusion.report_loss", "0.1"}, {"clusters.shared", "1"}};
     for (size_t k = 0; k < sizeof sound / sizeof sound[0]; k++) {
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, sound[k][0], sound[k][1], error, sizeof error), error);
     }
