@@ -66,7 +66,7 @@ class Quantity(Part):
     metric: str
     name: str = ""
     scale: float = 1.0
-    pool: Literal["mean", "rms", "median"] = "mean"  # over the seeds
+    pool: Literal["mean", "rms", "median", "share"] = "mean"  # over the seeds
 
 
 class Drawing(Part):

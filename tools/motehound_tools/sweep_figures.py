@@ -115,7 +115,7 @@ def pooled(values: Array, pool: str) -> float:
 def summarised(values: list[Array], pool: str) -> tuple[Array, Array]:
     mean = np.array([pooled(v, pool) for v in values])
     sd = np.array([np.std(v, ddof=1) if len(v) > 1 else 0.0 for v in values])
-    if pool == "median":  # of which a standard deviation says nothing
+    if pool in ("median", "share"):  # of which a standard deviation says nothing
         sd[:] = np.nan
     return mean, sd
 
@@ -284,11 +284,11 @@ def drawn(table: Table, panel: Panel, drawing: Drawing) -> Drawn | None:
         axes.set_xlabel(drawing.label)
     averaged = [short_name(key) for key in panel.grid if key not in (x, drawing.lines)]
     pools = {quantity.pool for quantity in drawing.y}
-    pool = {"rms": "Root mean square over", "median": "Median of"}.get(*pools, "Mean of") if len(pools) == 1 else "Mean of"
+    pool = {"rms": "Root mean square over", "median": "Median of", "share": "Share of"}.get(*pools, "Mean of") if len(pools) == 1 else "Mean of"
     caption = f"{pool} {len(panel.seeds)} seeds"
     if averaged:
         caption += f", and over every {', '.join(averaged[:-1]) + ' and ' if averaged[1:] else ''}{averaged[-1]}"
-    if (is_lines or len(found) == 1) and "median" not in pools:
+    if (is_lines or len(found) == 1) and not pools & {"median", "share"}:
         caption += "; the error bars are the standard deviation over the seeds" if len(panel.seeds) > 1 else ""
     title = ": ".join(part for part in (panel.title, drawing.title) if part)
     head = [axis_name(x) if is_lines else "series", *(line.name or drawing.label for line in found)]
