@@ -120,6 +120,16 @@ class Output:
         return bool(self.scenario) and self.scenario.sections.get("sensor", {}).get("quantity") == "range"
 
     @property
+    def is_search(self) -> bool:
+        """Whether the motes of a simulation measure a gas that the wind brings from a leak."""
+        return bool(self.scenario) and self.scenario.sections.get("sensor", {}).get("quantity") == "gas"
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether fixed clusters follow the target of a simulation."""
+        return bool(self.scenario) and self.scenario.sections.get("network", {}).get("protocol") == "fixed"
+
+    @property
     def skip_first(self) -> int:
         return int(self.scenario.number("metrics.skip_first")) if self.scenario else 0
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from . import figures, output, ranged_figures, sweep_figures
+from . import cluster_figures, figures, output, ranged_figures, search_figures, sweep_figures
 from .failure import Failure
 from .figures import Picture
 from .output import Output, Sweep
@@ -38,6 +38,14 @@ MEANING = {
     "sensors_to_10m": "gas: the same until the error fell below 10 m for good",
     "crlb_m": "gas: Cramér-Rao bound of the position, m",
     "rate_crlb": "gas: the same of the rate of release, as a share of it",
+    "anees": "mean normalised squared error of all states; their number is exact",
+    "claimed_over_rmse": "root mean square error that the tracker claims over that which it has",
+    "smse_m": "RMSE over the runs, added up over all instants with a position, m",
+    "position_rmse_worst_m": "RMSE over the runs at the worst instant, m",
+    **{f"local_position_rmse_m_{c}": f"RMSE of fixed cluster {c} by itself, m" for c in range(1, 5)},
+    **{f"local_anees_{c}": f"mean normalised squared error of fixed cluster {c}; 4 is exact" for c in range(1, 5)},
+    "rate_ratio": "last estimate of the rate of release over the true one",
+    "ccrb_m": "Cramér-Rao bound along the run's own path, m",
     "estimates": "positions that the head reported",
     "localisation_error_rs": "mean error of the heads' positions, share of the sensing range",
     "sink_error_rs": "mean error of what the sink has, share of the sensing range",
@@ -89,9 +97,6 @@ HEADLINES = (
     ("position_median_m", "median error", "m"),
     ("position_p95_m", "95th percentile", "m"),
     ("position_rmse_m", "RMSE", "m"),
-    ("success_50m", "searches that found the leak", "%"),
-    ("hops", "heads of a search", ""),
-    ("error_over_crlb", "error over its bound", ""),
     ("tracked_share", "samples with a position", "%"),
     ("track_lost", "tracks lost", "%"),
     ("rmse_over_pcrb", "RMSE over its bound", ""),
@@ -102,7 +107,25 @@ HEADLINES = (
     ("longest_gap_s", "longest without a position", "s"),
     ("nees_median", "median NEES (exact: 1.39)", ""),
 )
-
+HEADLINES_OF_SEARCHES = (
+    ("success_50m", "searches that found the leak", "%"),
+    ("converged_wrong", "ended, but farther off", "%"),
+    ("position_error_median_m", "median error at the end", "m"),
+    ("error_over_crlb", "error over its bound", ""),
+    ("rate_error_median", "median error of the rate", "%"),
+    ("nees_median", "median NEES (exact: 2.37)", ""),
+    ("hops", "heads", ""),
+    ("sensors_used", "sensors heard", ""),
+    ("sensors_to_10m", "of these until 10 m", ""),
+)
+HEADLINES_OF_CLUSTERS = (
+    ("position_rmse_m", "RMSE", "m"),
+    ("rmse_over_pcrb", "RMSE over its bound", ""),
+    ("position_rmse_worst_m", "RMSE at the worst instant", "m"),
+    ("smse_m", "RMSE, sum over time", "m"),
+    ("anees", "mean NEES (exact: 4)", ""),
+    ("claimed_over_rmse", "claimed over true RMSE", ""),
+)
 
 FACTS_OF_CONCENTRATIONS = (
     ("speed", "source", "speed_mps", " m/s"),
@@ -116,6 +139,31 @@ FACTS_OF_RANGES = (
     ("election", "protocol", "election", ""),
     ("network", "network", "protocol", ""),
 )
+FACTS_OF_SEARCHES = (
+    ("release", "source", "rate_mlps", " mL/s"),
+    ("wind", "wind", "speed_mps", " m/s"),
+    ("noise of a sample", "sensor", "noise_ppm", " ppm"),
+    ("network", "network", "protocol", ""),
+)
+FACTS_OF_CLUSTERS = (
+    ("rule", "fusion", "rule", ""),
+    ("reports every", "fusion", "report_s", " s"),
+    ("network", "network", "protocol", ""),
+)
+
+
+def headlines(results: Output) -> tuple[tuple[str, str, str], ...]:
+    if results.is_search:
+        return HEADLINES_OF_SEARCHES
+    return HEADLINES_OF_CLUSTERS if results.is_fixed else HEADLINES
+
+
+def facts_of_kind(results: Output) -> tuple[tuple[str, str, str, str], ...]:
+    if results.is_search:
+        return FACTS_OF_SEARCHES
+    if results.is_fixed:
+        return FACTS_OF_CLUSTERS
+    return FACTS_OF_RANGES if results.is_ranged else FACTS_OF_CONCENTRATIONS
 
 
 def number(value: object) -> str:
@@ -141,7 +189,7 @@ def figure(results: Output, metric: str, unit: str) -> str:
 
 def headline(results: Output) -> list[tuple[str, str, str]]:
     """(label, value, unit) of the figures that are said first."""
-    known = [head for head in HEADLINES if math.isfinite(results.pooled(head[0]))]
+    known = [head for head in headlines(results) if math.isfinite(results.pooled(head[0]))]
     return [(label, figure(results, metric, unit), unit) for metric, label, unit in known]
 
 
@@ -166,7 +214,7 @@ def facts(results: Output, varied: str) -> list[tuple[str, str]]:
             ("nodes", "network", "nodes", ""),
             ("layout", "network", "layout", ""),
             ("sampling interval", "sensor", "interval_s", " s"),
-            *(FACTS_OF_RANGES if results.is_ranged else FACTS_OF_CONCENTRATIONS),
+            *facts_of_kind(results),
         ):
             if key in scenario.get(section, {}) and f"{section}.{key}" != varied:
                 value = scenario[section][key]
@@ -177,6 +225,14 @@ def facts(results: Output, varied: str) -> list[tuple[str, str]]:
 def pictures(results: Output) -> list[Picture]:
     if not len(results.track["run"]):
         return []
+    if results.is_search:
+        drawn = [search_figures.walk_picture(results), search_figures.bound_picture(results)]
+        drawn += [figures.error_picture(results)]
+        return [picture for picture in drawn if picture]
+    if results.is_fixed:
+        drawn = [cluster_figures.field_picture(results), cluster_figures.error_picture(results)]
+        drawn += [cluster_figures.consistency_picture(results), figures.distribution_picture(results)]
+        return [picture for picture in drawn if picture]
     if results.is_ranged:
         drawn = [ranged_figures.field_picture(results), ranged_figures.excerpt_picture(results)]
     else:
@@ -223,7 +279,7 @@ def render_sweeps(folders: list[Path]) -> str:
 def render(found: Output | Sweep) -> str:
     first = found.outputs[0] if isinstance(found, Sweep) else found
     sweep = found if isinstance(found, Sweep) else None
-    columns = [head for head in HEADLINES if math.isfinite(first.pooled(head[0]))]
+    columns = [head for head in headlines(first) if math.isfinite(first.pooled(head[0]))]
     across = figures.sweep_picture(sweep) if sweep else None
     middle = sweep.outputs[len(sweep.outputs) // 2] if sweep else first
     return environment().get_template("report.html.j2").render(

@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 from conftest import write_output
 
-from motehound_tools import command, curves, experiment, figures, metrics, output, sweep, sweep_figures
+from motehound_tools import command, curves, experiment, figures, metrics, output, search_figures, sweep, sweep_figures
 from motehound_tools.failure import Failure
 from motehound_tools.report import number
+from motehound_tools.scenario import Scenario
 
 TOOLS = Path(__file__).resolve().parents[1]
 
@@ -69,6 +70,41 @@ def test_page_of_a_run(folder: Path) -> None:
     assert all(link.startswith("data:image/svg+xml;base64,") for link in page.links)  # nothing is fetched
     assert "position_rmse_m" in page.text
     assert number(output.read(folder).statistic("position_rmse_m")) in page.text  # type: ignore[union-attr]
+
+
+def titles_of(folder: Path) -> dict[str, str]:
+    done = call("report", folder)
+    assert done.returncode == 0, done.stderr
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    assert "1.39)" not in page.text.replace("(exact: 1.39 of two", "")  # what is exact of two states alone
+    return {title: rest for title, _, rest in (str(image["alt"]).partition(". ") for image in page.images)}
+
+
+@pytest.mark.skipif("MOTEHOUND" not in os.environ, reason="no command to run")
+@pytest.mark.parametrize("scenario", ["zhang_m", "xu_real"])
+def test_page_of_searches_and_fixed_clusters(tmp_path: Path, scenario: str) -> None:
+    told = [os.environ["MOTEHOUND"], "run", scenario, "--runs", "2", "--out", str(tmp_path / "out")]
+    subprocess.run(told, capture_output=True, check=True)
+    titles = titles_of(tmp_path / "out")
+    if scenario.startswith("zhang"):
+        heads = np.genfromtxt(tmp_path / "out" / "track.csv", delimiter=",", names=True)["run"] == 0
+        assert f"Run 0: {heads.sum()} heads" in titles["The search"]
+        assert {"Beside the bound", "Error against time"} < {*titles}
+    else:
+        assert titles["Field"] == "Run 0: 4 clusters of 3, 4, 5, 6 nodes."
+        assert {"Error against time", "Stated uncertainty", "Distribution"} < {*titles}
+
+
+def test_mean_concentration_far_from_the_source_falls_with_the_inverse_of_the_distance_downwind() -> None:
+    given = {"wind": {"direction_rad": 0.0, "speed_mps": 1.0}, "source": {"rate_mlps": 30.0, "mixing_m2ps": 30.0}}
+    places, source = np.array([[450.0, 200.0], [250.0, 200.0]]), np.array([50.0, 200.0])
+    ppm = search_figures.mean_ppm(Scenario(given, Path(".")), places, source)
+    assert np.allclose(ppm, [3.9789e-4, 7.9577e-4], rtol=1e-4)  # 1 / (2 pi 400), 1 / (2 pi 200)
+
+
+def test_chi_squared_of_three_states() -> None:
+    for x, share in ((2.36597, 0.5), (7.81473, 0.95)):
+        assert abs(search_figures.chi_squared_3(x) - share) < 1e-5
 
 
 def test_same_folder_same_bytes(folder: Path) -> None:
