@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import fixed_bound
 from .output import Output, read_table
 from .scenario import Array
 
@@ -28,8 +29,6 @@ def errors(track: dict[str, Array]) -> Array:
 
 def bounds(out: Output) -> Curves:
     """Of fixed clusters; the target's places between estimates are interpolated."""
-    from . import fixed_bound
-
     if not out.scenario or out.nodes is None or out.scenario.value("network.protocol") != "fixed":
         return {}
     step = out.scenario.number("sensor.interval_s")

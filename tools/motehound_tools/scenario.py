@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +102,7 @@ class Scenario:
             raise Failure(f"{self.folder / 'scenario.json'}: `{key}` is `{found}`, expected a number")
         return float(found)
 
-    @cached_property
+    @property
     def route(self) -> Route:
         points = self.value("source.points")
         kind = str(self.value("source.path"))
