@@ -70,7 +70,8 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
     const struct mh_region region = {0, far_corner.x_mm, 0, far_corner.y_mm};
     *kit = (struct mote_kit){.sensor = sensor_config(scenario)};
     if (tracker_choose(scenario, &region, &kit->tracker, error, error_size) ||
-        protocol_choose(scenario->network.protocol, scenario, &kit->protocol, error, error_size)) {
+        protocol_choose(scenario->network.protocol, scenario, &kit->protocol, error, error_size) ||
+        clusters_make(&kit->clusters, scenario, error, error_size)) {
         return -1;
     }
     if (scenario->source.path != PATH_NONE && kit->tracker.measures != scenario->sensor.quantity) {
@@ -86,9 +87,11 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
     }
     mote_kit_complete(kit, scenario, 0);
     if (kit->protocol.fixed) {
-        centre_choose(scenario, &kit->centre);
+        centre_choose(scenario, kit->clusters.count, &kit->centre);
+        protocol_tell_clusters(&kit->protocol, &kit->clusters);
     }
     if (kit->protocol.own_rates) {
+        tracker_tell_clusters(&kit->tracker, &kit->clusters);
         kit->head.lateness = kit->tracker.config.cv.lag;
     }
     if (kit->protocol.in_turns) {

@@ -13,6 +13,7 @@
 /* What all motes of a run have in common. Points into itself: not to be copied or moved once it is complete. */
 struct mote_kit {
     struct mh_sensor_config sensor;
+    struct clusters clusters; /* fixed ones */
     struct tracker_choice tracker;
     struct protocol_choice protocol;
     struct centre_choice centre; /* of the sink of fixed clusters */

@@ -2,7 +2,6 @@
 
 #include "ideal/ideal.h"
 #include "network.h"
-#include "world/clusters.h"
 #include "world/field.h"
 #include "world/gas.h"
 #include "world/ranging.h"
@@ -64,7 +63,7 @@ static void report_local(const struct run *run, uint32_t mote, double now_s, dou
 {
     const struct truth truth = truth_at(run, time_s);
     if (run->observer->local && is_reported(run, estimate)) {
-        const uint8_t cluster = (uint8_t)clustered_node(run->scenario, mote).cluster;
+        const uint8_t cluster = (uint8_t)run->roster.kit.clusters.nodes[mote].cluster;
         run->observer->local(run->observer->context, now_s, cluster, roster_id(&run->roster, mote), estimate, &truth);
     }
 }
@@ -137,7 +136,7 @@ static void sample_each(struct run *run, uint64_t instant, double time_s)
     const struct point source = trajectory_position(&run->field.trajectory, time_s);
     const bool own_rates = run->roster.kit.protocol.own_rates;
     for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
-        if (!own_rates || (instant > 0 && instant % clustered_node(run->scenario, i).period == 0)) {
+        if (!own_rates || (instant > 0 && instant % run->roster.kit.clusters.nodes[i].period == 0)) {
             sample_alone(run, instant, time_s, i, source);
         }
     }
@@ -248,7 +247,7 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
         run->end += (sim_time)run->roster.kit.protocol.config.fixed.wait * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     }
     run->quantity = scenario->sensor.quantity;
-    run->ranging = ranging_of(scenario, seed);
+    run->ranging = ranging_of(scenario, &run->roster.kit.clusters, seed);
     run->gas = gas_of(scenario, seed);
     run->concentrations = malloc(nodes * sizeof *run->concentrations);
     run->counts = malloc(nodes * sizeof *run->counts);

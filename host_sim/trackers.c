@@ -2,7 +2,6 @@
 
 #include "radio/radio.h"
 #include "roster.h"
-#include "world/clusters.h"
 #include "world/mobility.h"
 
 #include <math.h>
@@ -165,23 +164,25 @@ static void set_up_cv(struct tracker_choice *choice, const struct scenario *scen
     if (scenario->fusion.rule != MH_FUSION_CENTRAL) {
         config->summary = mh_summary_kind_of(scenario->fusion.rule);
     }
-    if (scenario->network.layout == LAYOUT_RINGS) {
-        for (size_t i = 0; i < clusters_nodes(scenario); i++) {
-            const struct clustered_node node = clustered_node(scenario, i);
-            choice->noise[i] = (struct mh_cv_noise){(mh_node_id)i, (mh_real)node.range_variance_m2};
-        }
-        config->noise = choice->noise;
-        config->noise_count = (uint16_t)clusters_nodes(scenario);
-    }
 }
 
-void centre_choose(const struct scenario *scenario, struct centre_choice *choice)
+void tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters)
+{
+    for (size_t i = 0; i < clusters->node_count; i++) {
+        const struct clustered_node *node = &clusters->nodes[i];
+        choice->noise[i] = (struct mh_cv_noise){node->id, (mh_real)node->range_variance_m2};
+    }
+    choice->config.cv.noise = choice->noise;
+    choice->config.cv.noise_count = (uint16_t)clusters->node_count;
+}
+
+void centre_choose(const struct scenario *scenario, size_t count, struct centre_choice *choice)
 {
     struct mh_fusion_centre_config *config = &choice->config;
     choice->centre = scenario->fusion.rule == MH_FUSION_CENTRAL ? NULL : &mh_centre_fusion;
     mh_fusion_centre_config_default(config);
     config->rule = scenario->fusion.rule;
-    config->clusters = (uint8_t)clusters_count(scenario);
+    config->clusters = (uint8_t)count;
     config->motion = motion_of(scenario);
     config->keep = (mh_tick)lround(scenario->fusion.keep_s * MH_TICKS_PER_S);
     config->start.n = MH_CV_STATES;
@@ -415,21 +416,31 @@ static void set_up_fixed(struct protocol_choice *choice, const struct scenario *
     choice->protocol = &mh_protocol_fixed;
     choice->fixed = true;
     mh_fixed_config_default(config);
-    for (size_t i = 0; i < clusters_nodes(scenario); i++) {
-        const struct point place = clustered_place(scenario, i);
-        choice->members[i] = (struct mh_fixed_member){(mh_node_id)i, place_from_metres(place.x_m, place.y_m, 0)};
-    }
-    for (size_t r = 0; r < clusters_count(scenario); r++) {
-        choice->clusters[r] = (struct mh_fixed_cluster){&choice->members[clusters_first(scenario, r)],
-                                                        (uint8_t)clusters_size(scenario, r)};
-    }
     config->port = &mh_mote_fixed;
-    config->clusters = choice->clusters;
-    config->cluster_count = (uint8_t)clusters_count(scenario);
     config->report_interval = config->fuse_interval = ticks(scenario->fusion.report_s);
     config->wait = ticks(fmin(scenario->fusion.wait_s, scenario->fusion.report_s));
     config->acknowledges = scenario->fusion.rule == MH_FUSION_HIF || scenario->fusion.rule == MH_FUSION_HIF_FEEDBACK;
     config->hello_period = ticks(scenario->protocol.hello_s);
+}
+
+void protocol_tell_clusters(struct protocol_choice *choice, const struct clusters *clusters)
+{
+    if (!choice->fixed) {
+        return;
+    }
+    struct mh_fixed_member *first = choice->members;
+    for (size_t r = 0; r < clusters->count; r++) {
+        choice->clusters[r] = (struct mh_fixed_cluster){first, (uint8_t)clusters->sizes[r]};
+        first += clusters->sizes[r];
+    }
+    for (size_t i = 0; i < clusters->node_count; i++) {
+        const struct clustered_node *node = &clusters->nodes[i];
+        const size_t before = (size_t)(choice->clusters[node->cluster].members - choice->members);
+        choice->members[before + node->index] =
+            (struct mh_fixed_member){node->id, place_from_metres(node->place.x_m, node->place.y_m, 0)};
+    }
+    choice->config.fixed.clusters = choice->clusters;
+    choice->config.fixed.cluster_count = (uint8_t)clusters->count;
 }
 
 static void set_up_token(struct protocol_choice *choice, const struct scenario *scenario)

@@ -23,8 +23,7 @@
 #include "scenario/recording.h"
 #include "scenario/scenario.h"
 #include "world/chatter.h"
-
-enum { CLUSTERED_NODES_MAX = 32 * SCENARIO_NUMBERS_MAX };
+#include "world/clusters.h"
 
 /* Points into itself where nodes have noise of their own: not to be copied or moved. */
 struct tracker_choice {
@@ -78,8 +77,11 @@ struct protocol_choice {
 int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
                    char *error, size_t error_size);
 
-/* The fusion centre that scenario->fusion names. */
-void centre_choose(const struct scenario *scenario, struct centre_choice *choice);
+/* Let the tracker cv_ukf or cv_ekf know the noise of fixed clusters' nodes. */
+void tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters);
+
+/* The fusion centre that scenario->fusion names, of `count` clusters. */
+void centre_choose(const struct scenario *scenario, size_t count, struct centre_choice *choice);
 
 /* The tracker that scenario->tracker names, for a recording with readings each interval_s. Where the winds are measured `gas` looks for the leak with them:
  * among the candidates, or else on a grid over the rectangle in which the nodes stand. Returns as tracker_choose, or -1 too where there are candidates and
@@ -99,7 +101,10 @@ struct mh_election_config election_config_of(const struct scenario *scenario);
 /* Name and meaning of tracker `i`, from 0; false after the last. */
 bool tracker_describe(size_t i, const char **name, const char **meaning);
 
-/* The protocol called `name`. Returns as tracker_choose. */
+/* Let the protocol `fixed` know its clusters; no other has any. */
+void protocol_tell_clusters(struct protocol_choice *choice, const struct clusters *clusters);
+
+/* The protocol called `name`; `fixed` is still to be told its clusters. Returns as tracker_choose. */
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
                     size_t error_size);
 

@@ -3,7 +3,6 @@
 #include "bounds/hindsight.h"
 #include "bounds/pcrb.h"
 #include "bounds/pcrb_fixed.h"
-#include "world/clusters.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -50,20 +49,24 @@ static int in_hindsight(const struct scenario *scenario, const struct trajectory
     return 0;
 }
 
-static int of_fixed_clusters(const struct scenario *scenario, uint64_t seed, const struct deployment *deployment,
-                             struct bounds *bounds)
+static int of_fixed_clusters(const struct scenario *scenario, uint64_t seed, struct bounds *bounds, char *error,
+                             size_t error_size)
 {
+    struct clusters clusters;
+    if (clusters_make(&clusters, scenario, error, error_size) != 0) {
+        return -1;
+    }
     double *squares = malloc((scenario_steps(scenario) + 1) * sizeof *squares);
-    int status = squares != NULL ? pcrb_fixed_posterior(scenario, deployment, PCRB_ALL_CLUSTERS, squares) : -1;
+    int status = squares != NULL ? pcrb_fixed_posterior(scenario, &clusters, PCRB_ALL_CLUSTERS, squares) : -1;
     if (status == 0) {
         bounds->pcrb_m = pcrb_fixed_rms_m(scenario, squares);
-        status = pcrb_fixed_conditional(scenario, deployment, PCRB_ALL_CLUSTERS, seed, squares);
+        status = pcrb_fixed_conditional(scenario, &clusters, PCRB_ALL_CLUSTERS, seed, squares);
     }
     if (status == 0) {
         bounds->ccrb_m = pcrb_fixed_rms_m(scenario, squares);
     }
-    for (int c = 0; c < BOUNDS_LOCAL && (size_t)c < clusters_count(scenario) && status == 0; c++) {
-        status = pcrb_fixed_conditional(scenario, deployment, c, seed, squares);
+    for (int c = 0; c < BOUNDS_LOCAL && (size_t)c < clusters.count && status == 0; c++) {
+        status = pcrb_fixed_conditional(scenario, &clusters, c, seed, squares);
         bounds->local_ccrb_m[c] = pcrb_fixed_rms_m(scenario, squares);
     }
     free(squares);
@@ -90,7 +93,7 @@ int bounds_of(const struct scenario *scenario, uint64_t seed, struct bounds *bou
         status = trajectory_make(&trajectory, scenario, seed, error, error_size);
     }
     if (status == 0 && fixed) {
-        status = of_fixed_clusters(scenario, seed, &deployment, bounds);
+        status = of_fixed_clusters(scenario, seed, bounds, error, error_size);
     } else if (status == 0) {
         bounds->pcrb_m = pcrb_m(scenario, seed, &deployment);
         status = in_hindsight(scenario, &trajectory, &deployment, bounds);

@@ -2,7 +2,6 @@
 
 #include "bounds/pcrb.h"
 #include "world/accelerated.h"
-#include "world/clusters.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +11,7 @@ enum { X, Y, VX, VY, STATES };
 enum { PATHS = 100 };
 
 /* What is measured at each step along the path of `seed` is added to informations[0 .. steps]. */
-static int add_path(const struct scenario *scenario, const struct deployment *deployment, int cluster, uint64_t seed,
+static int add_path(const struct scenario *scenario, const struct clusters *clusters, int cluster, uint64_t seed,
                     struct information *informations)
 {
     const struct accelerated target = accelerated_of(scenario);
@@ -22,12 +21,11 @@ static int add_path(const struct scenario *scenario, const struct deployment *de
         return -1;
     }
     accelerated_states(&target, seed, steps, states);
-    for (size_t i = 0; i < deployment->count; i++) {
-        const struct clustered_node what = clustered_node(scenario, i);
-        const struct point node = {deployment->nodes[i].x_m, deployment->nodes[i].y_m};
-        const bool heard = cluster == PCRB_ALL_CLUSTERS || clusters_hear(scenario, (size_t)cluster, i);
-        for (size_t k = what.period; heard && k <= steps; k += what.period) {
-            information_add_range(&informations[k], &states[k].at, &node, sqrt(what.range_variance_m2));
+    for (size_t i = 0; i < clusters->node_count; i++) {
+        const struct clustered_node *what = &clusters->nodes[i];
+        const bool heard = cluster == PCRB_ALL_CLUSTERS || clusters_hear(clusters, (size_t)cluster, i);
+        for (size_t k = what->period; heard && k <= steps; k += what->period) {
+            information_add_range(&informations[k], &states[k].at, &what->place, sqrt(what->range_variance_m2));
         }
     }
     free(states);
@@ -65,14 +63,14 @@ static void step(const struct scenario *scenario, struct pcrb *pcrb)
     }
 }
 
-static int bounds_of_paths(const struct scenario *scenario, const struct deployment *deployment, int cluster,
+static int bounds_of_paths(const struct scenario *scenario, const struct clusters *clusters, int cluster,
                            uint64_t first, size_t paths, double *bounds)
 {
     const size_t steps = scenario_steps(scenario);
     struct information *informations = calloc(steps + 1, sizeof *informations);
     int status = informations ? 0 : -1;
     for (size_t i = 0; i < paths && status == 0; i++) {
-        status = add_path(scenario, deployment, cluster, first + i, informations);
+        status = add_path(scenario, clusters, cluster, first + i, informations);
     }
     struct pcrb pcrb;
     begin(scenario, &pcrb);
@@ -90,16 +88,15 @@ static int bounds_of_paths(const struct scenario *scenario, const struct deploym
     return status;
 }
 
-int pcrb_fixed_posterior(const struct scenario *scenario, const struct deployment *deployment, int cluster,
-                         double *bounds)
+int pcrb_fixed_posterior(const struct scenario *scenario, const struct clusters *clusters, int cluster, double *bounds)
 {
-    return bounds_of_paths(scenario, deployment, cluster, 0, PATHS, bounds);
+    return bounds_of_paths(scenario, clusters, cluster, 0, PATHS, bounds);
 }
 
-int pcrb_fixed_conditional(const struct scenario *scenario, const struct deployment *deployment, int cluster,
-                           uint64_t seed, double *bounds)
+int pcrb_fixed_conditional(const struct scenario *scenario, const struct clusters *clusters, int cluster, uint64_t seed,
+                           double *bounds)
 {
-    return bounds_of_paths(scenario, deployment, cluster, seed, 1, bounds);
+    return bounds_of_paths(scenario, clusters, cluster, seed, 1, bounds);
 }
 
 double pcrb_fixed_rms_m(const struct scenario *scenario, const double *bounds)

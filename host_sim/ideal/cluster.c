@@ -23,6 +23,7 @@ struct run {
     struct vicinity vicinity;
     struct ledger ledger;
     struct trajectory path;
+    struct clusters clusters; /* fixed ones, whose nodes have noise of their own */
     struct ranging ranging;
     struct tracker_choice tracker;
     struct mh_election_config election;
@@ -426,9 +427,10 @@ static int make_world(struct run *run, uint64_t seed, char *error, size_t error_
     const struct scenario_field field = scenario_field(scenario);
     const struct mh_place corner = place_from_metres(field.width_m, field.height_m, 0);
     const struct mh_region region = {0, corner.x_mm, 0, corner.y_mm};
-    run->ranging = ranging_of(scenario, seed);
+    run->ranging = ranging_of(scenario, &run->clusters, seed);
     run->election = election_config_of(scenario);
-    if (deployment_make(&run->deployment, scenario, seed, error, error_size) ||
+    if (clusters_make(&run->clusters, scenario, error, error_size) ||
+        deployment_make(&run->deployment, scenario, seed, error, error_size) ||
         trajectory_make(&run->path, scenario, seed, error, error_size) ||
         tracker_choose(scenario, &region, &run->tracker, error, error_size)) {
         return -1;

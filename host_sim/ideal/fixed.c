@@ -2,7 +2,6 @@
 
 #include "engine/random.h"
 #include "roster.h"
-#include "world/clusters.h"
 #include "world/ranging.h"
 #include "world/trajectory.h"
 
@@ -14,6 +13,7 @@ struct run {
     const struct scenario *scenario;
     const struct observer *observer;
     struct deployment deployment;
+    struct clusters clusters;
     struct trajectory path;
     struct ranging ranging;
     struct tracker_choice tracker;
@@ -32,7 +32,7 @@ struct run {
 
 static mh_tick now(const struct run *run) { return (mh_tick)llround(run->truth.time_s * MH_TICKS_PER_S); }
 
-static mh_node_id sink_of(const struct run *run) { return (mh_node_id)run->deployment.count; }
+static mh_node_id sink_of(const struct run *run) { return run->deployment.nodes[run->deployment.count - 1].id + 1; }
 
 static void take_samples(struct run *run)
 {
@@ -41,7 +41,7 @@ static void take_samples(struct run *run)
         const struct recorded_node *node = &run->deployment.nodes[i];
         const double distance_m = hypot(node->x_m - run->truth.x_m, node->y_m - run->truth.y_m);
         double range_m;
-        if (run->sample % clustered_node(run->scenario, i).period == 0 &&
+        if (run->sample % run->clusters.nodes[i].period == 0 &&
             ranging_detects(&run->ranging, run->sample, i, distance_m, &range_m)) {
             run->sampled[run->sampled_count++] =
                 (struct mh_measurement){.node = node->id,
@@ -56,7 +56,8 @@ static enum mh_status step(struct run *run, size_t head, struct mh_estimate *est
 {
     size_t count = 0;
     for (size_t i = 0; i < run->sampled_count; i++) {
-        if (run->centre.centre == NULL || clusters_hear(run->scenario, head, run->sampled[i].node)) {
+        if (run->centre.centre == NULL ||
+            clusters_hear(&run->clusters, head, deployment_find(&run->deployment, run->sampled[i].node))) {
             run->heard[count++] = run->sampled[i];
         }
     }
@@ -76,7 +77,7 @@ static void tell_local(const struct run *run, size_t head, const struct mh_estim
 {
     const struct observer *observer = run->observer;
     if (observer->local) {
-        const mh_node_id node = run->deployment.nodes[clusters_first(run->scenario, head)].id;
+        const mh_node_id node = run->deployment.nodes[clusters_first(&run->clusters, head)].id;
         observer->local(observer->context, run->truth.time_s, (uint8_t)head, node, estimate, &run->truth);
     }
 }
@@ -191,16 +192,18 @@ static int make(struct run *run, uint64_t seed, char *error, size_t error_size)
     const struct scenario_field field = scenario_field(scenario);
     const struct mh_place corner = place_from_metres(field.width_m, field.height_m, 0);
     const struct mh_region region = {0, corner.x_mm, 0, corner.y_mm};
-    if (deployment_make(&run->deployment, scenario, seed, error, error_size) ||
+    if (clusters_make(&run->clusters, scenario, error, error_size) ||
+        deployment_make(&run->deployment, scenario, seed, error, error_size) ||
         trajectory_make(&run->path, scenario, seed, error, error_size) ||
         tracker_choose(scenario, &region, &run->tracker, error, error_size)) {
         return -1;
     }
-    centre_choose(scenario, &run->centre);
-    run->ranging = ranging_of(scenario, seed);
+    tracker_tell_clusters(&run->tracker, &run->clusters);
+    centre_choose(scenario, run->clusters.count, &run->centre);
+    run->ranging = ranging_of(scenario, &run->clusters, seed);
     run->losses = random_stream(seed, RANDOM_SUMMARIES);
     run->report_every = (uint64_t)llround(scenario->fusion.report_s / scenario->sensor.interval_s);
-    run->heads = run->centre.centre != NULL ? clusters_count(scenario) : 1;
+    run->heads = run->centre.centre != NULL ? run->clusters.count : 1;
     return begin(run, error, error_size);
 }
 

@@ -180,10 +180,10 @@ static int check_rings(const struct scenario *scenario, const char *name, char *
                     "%s: clusters.range_variance_m2: expected as many numbers as clusters.nodes has, %u, found %u",
                     name, count, scenario->clusters.range_variance_m2.count);
     }
-    if ((double)scenario->network.nodes < (double)clusters_nodes(scenario) ||
-        (double)scenario->network.nodes > (double)clusters_nodes(scenario)) {
+    if ((double)scenario->network.nodes < (double)rings_nodes(scenario) ||
+        (double)scenario->network.nodes > (double)rings_nodes(scenario)) {
         return fail(error, error_size, "%s: network.nodes: expected those of clusters.nodes together, %zu, found %lld",
-                    name, clusters_nodes(scenario), (long long)scenario->network.nodes);
+                    name, rings_nodes(scenario), (long long)scenario->network.nodes);
     }
     if (scenario->sensor.noisy_detection) {
         return fail(error, error_size, "%s: sensor.noisy_detection: expected false for network.layout rings", name);
@@ -205,10 +205,11 @@ static int check_fixed(const struct scenario *scenario, const char *name, char *
     if (!fixed) {
         return 0;
     }
-    if (scenario->network.layout != LAYOUT_RINGS || scenario->source.path != PATH_WHITE_ACCELERATION ||
+    const bool rings = scenario->network.layout == LAYOUT_RINGS;
+    if ((!rings && scenario->network.layout != LAYOUT_FILE) || scenario->source.path != PATH_WHITE_ACCELERATION ||
         scenario->sensor.quantity != QUANTITY_RANGE) {
         return fail(error, error_size,
-                    "%s: network.protocol: expected fixed only where network.layout is rings, source.path is "
+                    "%s: network.protocol: expected fixed only where network.layout is rings or file, source.path is "
                     "white_acceleration and sensor.quantity is range",
                     name);
     }
@@ -218,9 +219,12 @@ static int check_fixed(const struct scenario *scenario, const char *name, char *
                     "%s: fusion.report_s: expected a whole multiple of sensor.interval_s = %g, found %g", name,
                     scenario->sensor.interval_s, scenario->fusion.report_s);
     }
-    if (scenario->clusters.nodes.count > MH_FUSED_MAX) {
+    if (rings && scenario->clusters.nodes.count > MH_FUSED_MAX) {
         return fail(error, error_size, "%s: clusters.nodes: expected at most %d clusters for network.protocol fixed",
                     name, MH_FUSED_MAX);
+    }
+    if (!rings && scenario->sensor.noisy_detection) {
+        return fail(error, error_size, "%s: sensor.noisy_detection: expected false for network.protocol fixed", name);
     }
     if (!scenario->network.ideal && (scenario->fusion.report_loss > 0 || scenario->clusters.shared > 0)) {
         return fail(error, error_size,

@@ -211,21 +211,34 @@ int recording_parse_nodes(const char *text, size_t length, const char *name, str
     static const struct column columns[] = {{"node", true, true, 0, 4294967294.0},
                                             {"x_m", true, false, -PLACE_MAX_M, PLACE_MAX_M},
                                             {"y_m", true, false, -PLACE_MAX_M, PLACE_MAX_M},
-                                            {"z_m", false, false, -PLACE_MAX_M, PLACE_MAX_M}};
+                                            {"z_m", false, false, -PLACE_MAX_M, PLACE_MAX_M},
+                                            {"cluster", false, true, 1, MH_FUSED_MAX},
+                                            {"period_s", false, false, 1e-3, 1e6},
+                                            {"noise_m2", false, false, 1e-6, 1e4}};
     struct csv csv = {.at = text,
                       .end = text + length,
                       .name = name,
                       .columns = columns,
-                      .column_count = 4,
+                      .column_count = 7,
                       .error = error,
                       .error_size = error_size};
     if (open_csv(&csv) != 0) {
         return -1;
     }
+    if (!csv.present[4] && (csv.present[5] || csv.present[6])) {
+        return fail(error, error_size, "%s:%zu: expected a column cluster beside period_s and noise_m2, found none",
+                    name, csv.line - 1);
+    }
     int status = 1;
     for (bool first = true; (status = read_row(&csv, first)) == 1; first = false) {
-        if (!grow((void **)&recording->nodes, recording->node_count, sizeof *recording->nodes)) {
+        if (!grow((void **)&recording->nodes, recording->node_count, sizeof *recording->nodes) ||
+            (csv.present[4] &&
+             !grow((void **)&recording->members, recording->node_count, sizeof *recording->members))) {
             return no_memory(&csv);
+        }
+        if (csv.present[4]) {
+            recording->members[recording->node_count] =
+                (struct recorded_member){(uint32_t)csv.values[4], csv.values[5], csv.values[6], csv.line};
         }
         recording->nodes[recording->node_count++] =
             (struct recorded_node){(uint32_t)csv.values[0], csv.values[1], csv.values[2], csv.values[3]};
@@ -530,6 +543,7 @@ int recording_check_targets(const struct recording *recording, const char *readi
 void recording_free(struct recording *recording)
 {
     free(recording->nodes);
+    free(recording->members);
     free(recording->readings);
     free(recording->truths);
     free(recording->candidates);

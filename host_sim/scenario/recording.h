@@ -1,4 +1,4 @@
-/* A recording of a real network, from CSV: nodes (`node,x_m,y_m[,z_m]`), readings
+/* A recording of a real network, from CSV: nodes (`node,x_m,y_m[,z_m][,cluster[,period_s][,noise_m2]]`), readings
  * (`time_s,node,value[,target][,bearing_rad][,wind_speed_mps,wind_toward_rad]`) and, optionally, the truth
  * (`time_s,x_m,y_m[,target][,rate_mlps]`) and the places where a leak can be (`place,x_m,y_m`).
  *
@@ -18,6 +18,14 @@
 struct recorded_node {
     uint32_t id;          /* below 2^32 - 1 */
     double x_m, y_m, z_m; /* each within +- 1e6 */
+};
+
+/* Of which fixed cluster a node is. */
+struct recorded_member {
+    uint32_t cluster; /* from 1 to MH_FUSED_MAX */
+    double period_s;  /* between its samples; 0 without the column */
+    double noise_m2;  /* variance of its ranges; 0 without the column */
+    size_t line;      /* of the file */
 };
 
 struct recorded_reading {
@@ -43,6 +51,7 @@ struct recorded_place {
 /* In the order of the files, so by time. */
 struct recording {
     struct recorded_node *nodes;
+    struct recorded_member *members; /* of each node; NULL without the column `cluster` */
     size_t node_count;
     struct recorded_reading *readings;
     size_t reading_count;

@@ -90,7 +90,7 @@ static void lay_grid(struct deployment *deployment, const struct scenario *scena
 static void lay_rings(struct deployment *deployment, const struct scenario *scenario)
 {
     for (size_t i = 0; i < deployment->count; i++) {
-        const struct point place = clustered_place(scenario, i);
+        const struct point place = rings_node(scenario, i).place;
         deployment->nodes[i].x_m = place.x_m;
         deployment->nodes[i].y_m = place.y_m;
     }

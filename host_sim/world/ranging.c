@@ -1,15 +1,14 @@
 #include "world/ranging.h"
 
-#include "world/clusters.h"
 #include "world/recipe.h"
 
 #include <math.h>
 
-struct ranging ranging_of(const struct scenario *scenario, uint64_t seed)
+struct ranging ranging_of(const struct scenario *scenario, const struct clusters *clusters, uint64_t seed)
 {
     return (struct ranging){.range_m = scenario->sensor.range_m,
                             .noise_m = scenario->sensor.range_noise_m,
-                            .rings = scenario->network.layout == LAYOUT_RINGS ? scenario : NULL,
+                            .clusters = clusters != NULL && clusters->count > 0 ? clusters : NULL,
                             .correlation = scenario->sensor.noise_correlation,
                             .noisy = scenario->sensor.noisy_detection,
                             .seed = seed};
@@ -21,7 +20,7 @@ static double noise(const struct ranging *ranging, uint64_t sample, uint32_t nod
     const uint64_t everybody = UINT32_MAX; /* no node has this number */
     const uint64_t purpose = RECIPE_RANGE_NOISE + sample;
     const double sd_m =
-        ranging->rings != NULL ? sqrt(clustered_node(ranging->rings, node).range_variance_m2) : ranging->noise_m;
+        ranging->clusters != NULL ? sqrt(ranging->clusters->nodes[node].range_variance_m2) : ranging->noise_m;
     const double own = recipe_normal(ranging->seed, purpose, node);
     if (ranging->correlation <= 0) {
         return sd_m * own;

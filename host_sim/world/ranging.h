@@ -5,21 +5,22 @@
 #define MOTEHOUND_SIM_RANGING_H
 
 #include "scenario/scenario.h"
+#include "world/clusters.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 struct ranging {
-    double range_m;               /* the farthest that is detected */
-    double noise_m;               /* standard deviation, but for rings ... */
-    const struct scenario *rings; /* ... whose clusters have their own; NULL for another layout */
-    double correlation;           /* of the noise of any two ranges of a sample */
-    bool noisy;                   /* it is the noisy range that decides whether the target is detected */
+    double range_m;                  /* the farthest that is detected */
+    double noise_m;                  /* standard deviation, but for nodes ... */
+    const struct clusters *clusters; /* ... of fixed clusters, which have their own; NULL if there are none */
+    double correlation;              /* of the noise of any two ranges of a sample */
+    bool noisy;                      /* it is the noisy range that decides whether the target is detected */
     uint64_t seed;
 };
 
-/* Of scenario->sensor and, for rings, scenario->clusters; `scenario` outlives it. */
-struct ranging ranging_of(const struct scenario *scenario, uint64_t seed);
+/* Of scenario->sensor and its clusters, which may be none, or NULL for none; they outlive it. */
+struct ranging ranging_of(const struct scenario *scenario, const struct clusters *clusters, uint64_t seed);
 
 /* Node number `node`, `distance_m` from the target at sample `sample`, detects it; then *range_m is what it measures. Else *range_m
  * stays as it is. */

@@ -108,7 +108,7 @@ static void run(uint64_t seed)
     const struct mobility mobility = mobility_of(&scenario);
     mobility_positions(&mobility, seed, STEPS, seen.places);
     TEST_ASSERT_EQUAL_INT(0, deployment_make(&seen.nodes, &scenario, seed, error, sizeof error));
-    seen.ranging = ranging_of(&scenario, seed);
+    seen.ranging = ranging_of(&scenario, NULL, seed);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, simulation_run(&scenario, seed, &all, NULL, &counters, error, sizeof error),
                                   error);
 }

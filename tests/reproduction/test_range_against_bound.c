@@ -35,7 +35,7 @@ static void follow(const struct scenario *scenario, uint64_t seed, struct score 
     struct deployment deployment;
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, deployment_make(&deployment, scenario, seed, error, sizeof error), error);
     const struct mobility mobility = mobility_of(scenario);
-    const struct ranging ranging = ranging_of(scenario, seed);
+    const struct ranging ranging = ranging_of(scenario, NULL, seed);
     const struct mh_region region = {0, 1000000000, 0, 1000000000};
     struct tracker_choice choice;
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, tracker_choose(scenario, &region, &choice, error, sizeof error), error);

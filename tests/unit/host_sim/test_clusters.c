@@ -8,15 +8,23 @@
 #include "world/ranging.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #define ASSERT_NEAR(expected, actual, tolerance) TEST_ASSERT_TRUE(fabs((expected) - (actual)) <= (tolerance))
 
 static struct scenario scenario;
+static struct clusters clusters;
 static char error[300];
 
 static void set(const char *key, const char *value)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&scenario, key, value, error, sizeof error), error);
+}
+
+static void make_clusters(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, clusters_make(&clusters, &scenario, error, sizeof error), error);
 }
 
 void setUp(void)
@@ -66,23 +74,25 @@ static void each_node_has_its_cluster_and_its_rate(void)
 {
     static const uint64_t periods[18] = {2, 4, 6, 2, 2, 4, 6, 2, 2, 4, 4, 6, 2, 2, 4, 4, 6, 6};
     static const double variances[4] = {0.02, 0.015, 0.01, 0.03};
-    TEST_ASSERT_EQUAL_size_t(4, clusters_count(&scenario));
-    TEST_ASSERT_EQUAL_size_t(18, clusters_nodes(&scenario));
+    make_clusters();
+    TEST_ASSERT_EQUAL_size_t(4, clusters.count);
+    TEST_ASSERT_EQUAL_size_t(18, clusters.node_count);
     for (size_t i = 0; i < 18; i++) {
-        const struct clustered_node node = clustered_node(&scenario, i);
+        const struct clustered_node node = clusters.nodes[i];
         const size_t cluster = i < 3 ? 0 : i < 7 ? 1 : i < 12 ? 2 : 3;
         TEST_ASSERT_EQUAL_size_t(cluster, node.cluster);
-        TEST_ASSERT_EQUAL_size_t(i - clusters_first(&scenario, cluster), node.index);
+        TEST_ASSERT_EQUAL_size_t(i - clusters_first(&clusters, cluster), node.index);
         TEST_ASSERT_EQUAL_UINT64(periods[i], node.period);
         ASSERT_NEAR(variances[cluster], node.range_variance_m2, 0);
         for (size_t r = 0; r < 4; r++) {
-            TEST_ASSERT_EQUAL(r == cluster, clusters_hear(&scenario, r, i));
+            TEST_ASSERT_EQUAL(r == cluster, clusters_hear(&clusters, r, i));
         }
     }
     set("clusters.shared", "2");
-    TEST_ASSERT_TRUE(clusters_hear(&scenario, 0, 4) && !clusters_hear(&scenario, 0, 5));
-    TEST_ASSERT_TRUE(clusters_hear(&scenario, 3, 1) && !clusters_hear(&scenario, 3, 2));
-    TEST_ASSERT_FALSE(clusters_hear(&scenario, 1, 0));
+    make_clusters();
+    TEST_ASSERT_TRUE(clusters_hear(&clusters, 0, 4) && !clusters_hear(&clusters, 0, 5));
+    TEST_ASSERT_TRUE(clusters_hear(&clusters, 3, 1) && !clusters_hear(&clusters, 3, 2));
+    TEST_ASSERT_FALSE(clusters_hear(&clusters, 1, 0));
 }
 
 /* Position and velocity obey the model between any two instants, and the path goes through them. */
@@ -142,7 +152,8 @@ static void ranges_have_the_noise_that_is_asked_for(void)
 {
     enum { SAMPLES = 20000 };
     set("sensor.noise_correlation", "0.6");
-    const struct ranging ranging = ranging_of(&scenario, 3);
+    make_clusters();
+    const struct ranging ranging = ranging_of(&scenario, &clusters, 3);
     double own[2] = {0}, both = 0, next = 0, last = 0;
     for (uint64_t t = 0; t < SAMPLES; t++) {
         double a, b;
@@ -162,11 +173,79 @@ static void ranges_have_the_noise_that_is_asked_for(void)
     ASSERT_NEAR(0, next / SAMPLES, tolerance);
 }
 
+/* A file's text as network.file of clusters that are one's own. */
+static int read_own(const char *text)
+{
+    static const char path[] = "own_clusters.csv";
+    FILE *file = fopen(path, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+    set("network.layout", "file");
+    set("network.protocol", "fixed");
+    set("network.file", path);
+    const int status = clusters_make(&clusters, &scenario, error, sizeof error);
+    remove(path);
+    return status;
+}
+
+static void clusters_of_ones_own(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0,
+                                  read_own("node,x_m,y_m,cluster,period_s,noise_m2\n"
+                                           "40,1,2,2,0.5,0.01\n7,3,4,1,1,0.04\n12,5,6,2,1.5,0.09\n9,7,8,1,3,0.16\n"),
+                                  error);
+    static const struct clustered_node wanted[4] = {{7, {3, 4}, 0, 0, 2, 0.04},
+                                                    {9, {7, 8}, 0, 1, 6, 0.16},
+                                                    {12, {5, 6}, 1, 0, 3, 0.09},
+                                                    {40, {1, 2}, 1, 1, 1, 0.01}};
+    TEST_ASSERT_EQUAL_size_t(2, clusters.count);
+    TEST_ASSERT_EQUAL_size_t(4, clusters.node_count);
+    for (size_t i = 0; i < 4; i++) {
+        const struct clustered_node *node = &clusters.nodes[i];
+        TEST_ASSERT_EQUAL_UINT32(wanted[i].id, node->id);
+        TEST_ASSERT_EQUAL_size_t(wanted[i].cluster, node->cluster);
+        TEST_ASSERT_EQUAL_size_t(wanted[i].index, node->index);
+        TEST_ASSERT_EQUAL_UINT64(wanted[i].period, node->period);
+        ASSERT_NEAR(wanted[i].place.x_m, node->place.x_m, 0);
+        ASSERT_NEAR(wanted[i].place.y_m, node->place.y_m, 0);
+        ASSERT_NEAR(wanted[i].range_variance_m2, node->range_variance_m2, 0);
+    }
+    TEST_ASSERT_EQUAL_size_t(2, clusters_first(&clusters, 1));
+    set("clusters.every", "3");
+    set("sensor.range_noise_m", "0.2");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, read_own("cluster,node,x_m,y_m\n1,1,1,1\n1,2,2,2\n1,3,3,3\n1,4,4,4\n"), error);
+    TEST_ASSERT_EQUAL_UINT64(3, clusters.nodes[3].period);
+    ASSERT_NEAR(0.04, clusters.nodes[3].range_variance_m2, 1e-12);
+}
+
+static void clusters_of_ones_own_have_limits(void)
+{
+    static const char *const cases[][2] = {
+        {"node,x_m,y_m\n1,1,1\n2,2,2\n3,3,3\n4,4,4\n", "csv:1: expected a column cluster"},
+        {"node,x_m,y_m,period_s\n1,1,1,1\n2,2,2,1\n3,3,3,1\n4,4,4,1\n", "csv:1: expected a column cluster"},
+        {"node,x_m,y_m,cluster\n1,1,1,1\n2,2,2,0\n3,3,3,1\n4,4,4,1\n", "csv:3: cluster: expected a whole number"},
+        {"node,x_m,y_m,cluster\n1,1,1,1\n2,2,2,1.5\n3,3,3,1\n4,4,4,1\n", "csv:3: cluster: expected a whole number"},
+        {"node,x_m,y_m,cluster\n1,1,1,1\n2,2,2,3\n3,3,3,3\n4,4,4,1\n", "found 0 of 2"},
+        {"node,x_m,y_m,cluster,period_s\n1,1,1,1,1\n2,2,2,1,1\n3,3,3,1,0.75\n4,4,4,1,1\n", "csv:4: period_s: expected"},
+        {"node,x_m,y_m,z_m,cluster\n1,1,1,0,1\n2,2,2,1,1\n3,3,3,0,1\n4,4,4,0,1\n", "csv:3: z_m: expected 0"},
+        {"node,x_m,y_m,cluster,noise_m2\n1,1,1,1,0\n2,2,2,1,1\n3,3,3,1,1\n4,4,4,1,1\n", "csv:2: noise_m2: expected"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(-1, read_own(cases[i][0]), cases[i][1]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, cases[i][1]), error);
+    }
+    set("sensor.range_noise_m", "0");
+    TEST_ASSERT_EQUAL_INT(-1, read_own("node,x_m,y_m,cluster\n1,1,1,1\n2,2,2,1\n3,3,3,1\n4,4,4,1\n"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, "csv:1: expected a column noise_m2"), error);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(rings_stand_where_they_should);
     RUN_TEST(each_node_has_its_cluster_and_its_rate);
+    RUN_TEST(clusters_of_ones_own);
+    RUN_TEST(clusters_of_ones_own_have_limits);
     RUN_TEST(the_path_is_that_of_the_model);
     RUN_TEST(start_and_accelerations_have_their_moments);
     RUN_TEST(ranges_have_the_noise_that_is_asked_for);

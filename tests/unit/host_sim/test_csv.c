@@ -119,12 +119,18 @@ struct bad {
 static void a_bad_file_is_refused_in_one_line_with_file_line_column_and_expectation(void)
 {
     static const struct bad cases[] = {
-        {nodes, "", "n.csv:1: expected the columns node,x_m,y_m,[z_m], found no 'node'"},
-        {nodes, "node,x_m\n", "n.csv:1: expected the columns node,x_m,y_m,[z_m], found no 'y_m'"},
+        {nodes, "",
+         "n.csv:1: expected the columns node,x_m,y_m,[z_m],[cluster],[period_s],[noise_m2], found no 'node'"},
+        {nodes, "node,x_m\n",
+         "n.csv:1: expected the columns node,x_m,y_m,[z_m],[cluster],[period_s],[noise_m2], found no 'y_m'"},
         {nodes, "node,x_m,y_m,colour\n",
-         "n.csv:1: expected the columns node,x_m,y_m,[z_m], found an unknown column 'colour'"},
-        {nodes, "node,x_m,y_m,x_m\n", "n.csv:1: expected the columns node,x_m,y_m,[z_m], found twice 'x_m'"},
-        {nodes, "node,x_m,y_m,\n", "n.csv:1: expected the columns node,x_m,y_m,[z_m], found an unknown column ''"},
+         "n.csv:1: expected the columns node,x_m,y_m,[z_m],[cluster],[period_s],[noise_m2], found an unknown column "
+         "'colour'"},
+        {nodes, "node,x_m,y_m,x_m\n",
+         "n.csv:1: expected the columns node,x_m,y_m,[z_m],[cluster],[period_s],[noise_m2], found twice 'x_m'"},
+        {nodes, "node,x_m,y_m,\n",
+         "n.csv:1: expected the columns node,x_m,y_m,[z_m],[cluster],[period_s],[noise_m2], found an unknown column "
+         "''"},
         {nodes, "node,x_m,y_m\n1,0,0\n2,0,0\n3,0,0\n", "n.csv: node: expected at least 4 nodes, found 3"},
         {nodes, "node,x_m,y_m\n", "n.csv: node: expected at least 4 nodes, found 0"},
         {nodes, "node,x_m,y_m\n5,0,0\n2,0,0\n3,0,0\n5,1,0\n",

@@ -2,6 +2,7 @@
 #include "bounds/pcrb_fixed.h"
 #include "port.h"
 #include "unity.h"
+#include "world/deployment.h"
 
 #include <math.h>
 
@@ -9,6 +10,7 @@ enum { STEPS = 200 };
 
 static struct scenario scenario;
 static struct deployment nodes;
+static struct clusters clusters;
 static double bounds[STEPS + 1];
 static char error[300];
 
@@ -20,6 +22,13 @@ static void set(const char *key, const char *value)
 static void near(double expected, double actual, double share)
 {
     TEST_ASSERT_TRUE(fabs(actual / expected - 1) <= share);
+}
+
+/* The scenario's, as it is now. */
+static const struct clusters *its_clusters(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, clusters_make(&clusters, &scenario, error, sizeof error), error);
+    return &clusters;
 }
 
 void setUp(void)
@@ -51,7 +60,7 @@ static void motion_alone(void)
 {
     set("clusters.range_variance_m2", "1e4, 1e4, 1e4, 1e4");
     set("clusters.every", "1000");
-    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, &nodes, PCRB_ALL_CLUSTERS, bounds));
+    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, its_clusters(), PCRB_ALL_CLUSTERS, bounds));
     double blur = 0;
     for (int k = 0; k <= STEPS; k++) {
         near(2 + pow(0.5 * k, 2) * 2 * 0.04 + blur * (1e-4 + 4e-4), bounds[k], 1e-9);
@@ -67,7 +76,7 @@ static void standing(void)
     set("target.acceleration_x_mps2", "1e-5");
     set("target.acceleration_y_mps2", "1e-5");
     set("target.position_sd_m", "0.5");
-    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, &nodes, 1, bounds));
+    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, its_clusters(), 1, bounds));
     /* in the first ten seconds cluster 2's nodes sample 10, 10, 5 and 3 times, at 0.015 m2 */
     const double times[4] = {10, 10, 5, 3};
     double xx = 4, xy = 0, yy = 4;
@@ -84,26 +93,26 @@ static void standing(void)
 static void all_clusters_and_one(void)
 {
     double one[STEPS + 1], path[STEPS + 1];
-    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, &nodes, PCRB_ALL_CLUSTERS, bounds));
+    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, its_clusters(), PCRB_ALL_CLUSTERS, bounds));
     double paths = 0, paths_of_one = 0;
     for (uint64_t seed = 0; seed < 100; seed++) {
-        TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_conditional(&scenario, &nodes, PCRB_ALL_CLUSTERS, seed, path));
-        TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_conditional(&scenario, &nodes, 2, seed, one));
+        TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_conditional(&scenario, its_clusters(), PCRB_ALL_CLUSTERS, seed, path));
+        TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_conditional(&scenario, its_clusters(), 2, seed, one));
         for (int k = 2; k <= STEPS; k++) {
             TEST_ASSERT_TRUE(path[k] < one[k]);
         }
         paths += pow(pcrb_fixed_rms_m(&scenario, path), 2) / 100;
         paths_of_one += pow(pcrb_fixed_rms_m(&scenario, one), 2) / 100;
     }
-    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, &nodes, 2, one));
+    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, its_clusters(), 2, one));
     const double all_m = pcrb_fixed_rms_m(&scenario, bounds), one_m = pcrb_fixed_rms_m(&scenario, one);
     TEST_ASSERT_TRUE(sqrt(paths) >= all_m && sqrt(paths_of_one) >= one_m); /* Jensen's inequality */
     set("target.position_sd_m", "0.001");
     set("target.velocity_sd_mps", "0.001");
     set("target.acceleration_x_mps2", "1e-5");
     set("target.acceleration_y_mps2", "1e-5");
-    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, &nodes, PCRB_ALL_CLUSTERS, bounds));
-    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_conditional(&scenario, &nodes, PCRB_ALL_CLUSTERS, 7, path));
+    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_posterior(&scenario, its_clusters(), PCRB_ALL_CLUSTERS, bounds));
+    TEST_ASSERT_EQUAL_INT(0, pcrb_fixed_conditional(&scenario, its_clusters(), PCRB_ALL_CLUSTERS, 7, path));
     near(pcrb_fixed_rms_m(&scenario, bounds), pcrb_fixed_rms_m(&scenario, path), 1e-3);
 }
 

@@ -150,7 +150,7 @@ static void heading_keeps_its_spread(void)
 
 static void detection(void)
 {
-    struct ranging ranging = ranging_of(&scenario, 1);
+    struct ranging ranging = ranging_of(&scenario, NULL, 1);
     double range = -1;
     TEST_ASSERT_TRUE(ranging_detects(&ranging, 7, 42, 50, &range));
     assert_near(50 + 5 * 1.234403059410361, range);
@@ -170,7 +170,7 @@ static void detection(void)
 /* Near the target about half of the ranges are negative, and of those far beyond the range some are detected by their noise. */
 static void ranges_are_what_the_noise_makes_them(void)
 {
-    struct ranging ranging = ranging_of(&scenario, 3);
+    struct ranging ranging = ranging_of(&scenario, NULL, 3);
     int negative = 0, heard = 0;
     double sum = 0, squares = 0;
     ranging.noisy = true;
