@@ -51,14 +51,6 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     return MH_ERR_NO_ROUTE;
 }
 
-static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time)
-{
-    (void)state, (void)now, (void)interest, (void)time;
-    return MH_OK;
-}
-
-static void tell_tracking(void *state, mh_tick now, bool tracking) { (void)state, (void)now, (void)tracking; }
-
 static mh_wire_types types[] = {&mh_wire_landmark, NULL};
 
 const struct mh_protocol chatter_protocol = {.name = "chatter",
@@ -69,6 +61,4 @@ const struct mh_protocol chatter_protocol = {.name = "chatter",
                                              .start = start,
                                              .message = message,
                                              .timer = timer,
-                                             .publish = publish,
-                                             .ask = ask,
-                                             .tell_tracking = tell_tracking};
+                                             .publish = publish};

@@ -67,6 +67,9 @@ enum mh_status mh_link_init(struct mh_link *link, const struct mh_link_config *c
 /* Send to all in range, at once. */
 void mh_link_broadcast(struct mh_link *link, const struct mh_message *message);
 
+/* Say hello to all in range, with the number *hellos, from 0 at the start, and count it. After UINT16_MAX comes 256: neighbours see the low byte go on. */
+void mh_link_hello(struct mh_link *link, uint16_t *hellos);
+
 /* Send to one neighbour, at once and once, past the queue: mh_link_sent() then answers MH_LINK_OTHER. */
 void mh_link_direct(struct mh_link *link, mh_node_id neighbour, const struct mh_message *message);
 

@@ -147,9 +147,10 @@ struct mh_protocol {
     void (*timer)(void *state, mh_tick now);
     /* Hand on what this node measured. Errors: MH_ERR_NO_ROUTE, MH_ERR_CAPACITY (no more can wait to be sent). */
     enum mh_status (*publish)(void *state, mh_tick now, const struct mh_measurement *measurement);
-    /* Head: ask the nodes in `interest` for the sample of instant `time`. Errors: MH_ERR_ARGUMENT (not a head). */
+    /* Head: ask the nodes in `interest` for the sample of instant `time`. Errors: MH_ERR_ARGUMENT (not a head). May
+     * be NULL: heads ask by themselves, or all is reported unasked. */
     enum mh_status (*ask)(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time);
-    /* Head: tell the network that a track has begun or is lost. No effect on other motes. */
+    /* Head: tell the network that a track has begun or is lost. No effect on other motes. May be NULL. */
     void (*tell_tracking)(void *state, mh_tick now, bool tracking);
     /* Head: an instant is closed: `estimate` is what the tracker made of the measurements, NULL if it has no position. May be NULL. The
      * head's own is among the measurements. */

@@ -383,6 +383,13 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
     return MH_OK;
 }
 
+static void tell_tracking(struct mh_mote *mote, mh_tick now)
+{
+    if (mote->config->protocol->tell_tracking) {
+        mote->config->protocol->tell_tracking(protocol_state(mote), now, mote->tracking);
+    }
+}
+
 /* What was kept under the time before means nothing now. */
 static void time_jumped(struct mh_mote *mote, mh_tick now)
 {
@@ -396,7 +403,7 @@ static void time_jumped(struct mh_mote *mote, mh_tick now)
         (void)begin_head(mote, now);
         if (mote->tracking) {
             mote->tracking = false;
-            config->protocol->tell_tracking(protocol_state(mote), now, false);
+            tell_tracking(mote, now);
         }
     }
     mote->leads = mote->leads && !config->protocol->in_turns;
@@ -459,14 +466,16 @@ static void close_instant(struct mh_mote *mote, mh_tick now)
     }
     if (mote->tracking != head->tracking) {
         mote->tracking = head->tracking;
-        protocol->tell_tracking(protocol_state(mote), now, head->tracking);
+        tell_tracking(mote, now);
     }
     if (protocol->closed) {
         protocol->closed(protocol_state(mote), now, head->instant, found ? &estimate : NULL, head->measurements, used);
     }
     mh_head_go_on(head, used);
     if (mote->leads && tracker->interest && tracker->interest(mote->config->head->tracker_state, &interest) == MH_OK) {
-        (void)protocol->ask(protocol_state(mote), now, &interest, head->instant);
+        if (protocol->ask) {
+            (void)protocol->ask(protocol_state(mote), now, &interest, head->instant);
+        }
         protocol_asked(mote, now, &interest, head->instant);
     }
 }

@@ -1,4 +1,5 @@
 #include "cluster_node.h"
+#include "timers.h"
 
 #include "motehound/geographic.h"
 #include "motehound/spread.h"
@@ -6,27 +7,22 @@
 #include <string.h>
 
 #define HELLOS_AT_START 3
-#define WELCOME_WINDOWS 16           /* over so many windows the neighbours of a newcomer spread their hellos */
-#define WELCOME_PAUSE 10000          /* ticks: nobody says hello to newcomers more often */
-#define MEMORY ((int32_t)1 << 30)    /* ticks: what is known of a track is kept so long */
-#define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
+#define WELCOME_WINDOWS 16        /* over so many windows the neighbours of a newcomer spread their hellos */
+#define WELCOME_PAUSE 10000       /* ticks: nobody says hello to newcomers more often */
+#define MEMORY ((int32_t)1 << 30) /* ticks: what is known of a track is kept so long */
 
 /* ---- timers ---- */
 
 void mh_cluster_set(struct mh_cluster_node *c, enum mh_cluster_timer timer, mh_tick time)
 {
-    c->due[timer] = time;
-    c->set = (uint16_t)(c->set | 1u << timer);
+    mh_timers_set(&c->set, c->due, timer, time);
 }
 
-void mh_cluster_clear(struct mh_cluster_node *c, enum mh_cluster_timer timer)
-{
-    c->set = (uint16_t)(c->set & ~(1u << timer));
-}
+void mh_cluster_clear(struct mh_cluster_node *c, enum mh_cluster_timer timer) { mh_timers_clear(&c->set, timer); }
 
 bool mh_cluster_is_set(const struct mh_cluster_node *c, enum mh_cluster_timer timer)
 {
-    return (c->set >> timer & 1u) != 0;
+    return mh_timers_is_set(c->set, timer);
 }
 
 void mh_cluster_listen(struct mh_cluster_node *c, mh_tick until)
@@ -85,13 +81,11 @@ static bool next_sending(const struct mh_cluster_node *c, mh_tick *time)
 
 static void arm(struct mh_cluster_node *c)
 {
-    mh_tick next = c->time;
-    bool wanted = next_sending(c, &next);
-    for (int timer = 0; timer < MH_CLUSTER_TIMERS; timer++) {
-        if (mh_cluster_is_set(c, (enum mh_cluster_timer)timer) && (!wanted || mh_tick_before(c->due[timer], next))) {
-            next = c->due[timer];
-            wanted = true;
-        }
+    mh_tick next = c->time, sending;
+    bool wanted = mh_timers_earliest(c->set, c->due, MH_CLUSTER_TIMERS, &next);
+    if (next_sending(c, &sending) && (!wanted || mh_tick_before(sending, next))) {
+        next = sending;
+        wanted = true;
     }
     if (wanted) {
         c->node->port->set_timer(c->node->context, c->node->port->own(c->node->context, next));
@@ -214,16 +208,10 @@ static void hello_in_window(struct mh_cluster_node *c, mh_tick from, uint8_t win
 static void say_hello(struct mh_cluster_node *c)
 {
     const mh_tick period = c->config->hello_period, part = MH_CLUSTER_START / HELLOS_AT_START;
-    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
-                                       .as.hello = {.sender = (int32_t)c->node->id,
-                                                    .x_mm = c->node->place.x_mm,
-                                                    .y_mm = c->node->place.y_mm,
-                                                    .sequence = (int16_t)c->hellos}};
-    mh_link_broadcast(&c->link, &message);
+    mh_link_hello(&c->link, &c->hellos);
     mh_neighbours_age(&c->neighbours, c->now);
     forget(c);
     c->greeted = c->time;
-    c->hellos = c->hellos < UINT16_MAX ? (uint16_t)(c->hellos + 1) : HELLOS_AGAIN;
     if (c->hellos < HELLOS_AT_START - 1) {
         mh_cluster_set(c, MH_CLUSTER_HELLO, c->began + part * c->hellos + mh_spread(c->node->id, c->hellos, part));
     } else if (c->hellos < HELLOS_AT_START) {
@@ -424,9 +412,8 @@ static void timer(void *state, mh_tick now)
     if (!comes(c, now)) {
         return;
     }
-    for (int k = 0; k < MH_CLUSTER_TIMERS; k++) {
-        if (mh_cluster_is_set(c, (enum mh_cluster_timer)k) && !mh_tick_before(c->time, c->due[k])) {
-            mh_cluster_clear(c, (enum mh_cluster_timer)k);
+    for (unsigned k = 0; k < MH_CLUSTER_TIMERS; k++) {
+        if (mh_timers_take(&c->set, c->due, k, c->time)) {
             at[k](c);
         }
     }
@@ -442,22 +429,6 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     mh_cluster_sampled(c, measurement);
     arm(c);
     return MH_OK;
-}
-
-static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time)
-{
-    (void)state;
-    (void)now;
-    (void)interest;
-    (void)time;
-    return MH_ERR_ARGUMENT; /* clusters ask by themselves */
-}
-
-static void tell_tracking(void *state, mh_tick now, bool tracking)
-{
-    (void)state;
-    (void)now;
-    (void)tracking;
 }
 
 static void closed(void *state, mh_tick now, mh_tick instant, const struct mh_estimate *estimate,
@@ -497,8 +468,6 @@ const struct mh_protocol mh_protocol_cluster = {
     .sent = sent,
     .timer = timer,
     .publish = publish,
-    .ask = ask,
-    .tell_tracking = tell_tracking,
     .closed = closed,
     .time_jumped = time_jumped,
     .count = count,

@@ -1,35 +1,25 @@
 #include "fixed_node.h"
+#include "timers.h"
 
 #include "motehound/geographic.h"
 #include "motehound/spread.h"
 
 #include <string.h>
 
-#define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
-
 /* ---- timers ---- */
 
 void mh_fixed_set(struct mh_fixed *f, enum mh_fixed_timer timer, mh_tick time)
 {
-    f->due[timer] = time;
-    f->set = (uint16_t)(f->set | 1u << timer);
+    mh_timers_set(&f->set, f->due, timer, time);
 }
 
-void mh_fixed_clear(struct mh_fixed *f, enum mh_fixed_timer timer) { f->set = (uint16_t)(f->set & ~(1u << timer)); }
-
-static bool is_set(const struct mh_fixed *f, int timer) { return (f->set >> timer & 1u) != 0; }
+void mh_fixed_clear(struct mh_fixed *f, enum mh_fixed_timer timer) { mh_timers_clear(&f->set, timer); }
 
 static void arm(struct mh_fixed *f)
 {
-    mh_tick next = f->now, retry;
-    bool wanted = false;
-    for (int timer = 0; timer < MH_FIXED_TIMERS; timer++) {
-        const mh_tick due = is_set(f, timer) ? f->node->port->own(f->node->context, f->due[timer]) : 0;
-        if (is_set(f, timer) && (!wanted || mh_tick_before(due, next))) {
-            next = due;
-            wanted = true;
-        }
-    }
+    mh_tick next = f->time, retry;
+    bool wanted = mh_timers_earliest(f->set, f->due, MH_FIXED_TIMERS, &next);
+    next = f->node->port->own(f->node->context, next);
     if (mh_link_alarm(&f->link, &retry) && (!wanted || mh_tick_before(retry, next))) {
         next = retry;
         wanted = true;
@@ -145,13 +135,6 @@ static void hear_envelope(struct mh_fixed *f, const struct mh_message *heard)
 /* The first ones come as fast as summaries, which need to know the way. */
 static void say_hello(struct mh_fixed *f)
 {
-    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
-                                       .as.hello = {.sender = (int32_t)f->node->id,
-                                                    .x_mm = f->node->place.x_mm,
-                                                    .y_mm = f->node->place.y_mm,
-                                                    .sequence = (int16_t)f->hellos}};
-    mh_link_broadcast(&f->link, &message);
-    mh_neighbours_age(&f->neighbours, f->now);
     mh_tick period = f->config->report_interval;
     for (uint16_t i = 0; i < f->hellos && period < f->config->hello_period; i++) {
         period *= 2;
@@ -159,7 +142,8 @@ static void say_hello(struct mh_fixed *f)
     if (period > f->config->hello_period) {
         period = f->config->hello_period;
     }
-    f->hellos = f->hellos < UINT16_MAX ? (uint16_t)(f->hellos + 1) : HELLOS_AGAIN;
+    mh_link_hello(&f->link, &f->hellos);
+    mh_neighbours_age(&f->neighbours, f->now);
     mh_fixed_set(f, MH_FIXED_HELLO, f->time + period - mh_spread(f->node->id, f->hellos, period / 4));
 }
 
@@ -323,10 +307,9 @@ static void timer(void *state, mh_tick now)
     if (!comes(f, now)) {
         return;
     }
-    for (int timer = 0; timer < MH_FIXED_TIMERS; timer++) {
-        if (is_set(f, timer) && !mh_tick_before(f->time, f->due[timer])) {
-            mh_fixed_clear(f, (enum mh_fixed_timer)timer);
-            at[timer](f);
+    for (unsigned k = 0; k < MH_FIXED_TIMERS; k++) {
+        if (mh_timers_take(&f->set, f->due, k, f->time)) {
+            at[k](f);
         }
     }
     done(f);
@@ -344,23 +327,6 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     const enum mh_status status = mh_fixed_send(f, &report, head->id, &head->place);
     done(f);
     return status;
-}
-
-/* Members report all that they sample. */
-static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time)
-{
-    (void)state;
-    (void)now;
-    (void)interest;
-    (void)time;
-    return MH_OK;
-}
-
-static void tell_tracking(void *state, mh_tick now, bool tracking)
-{
-    (void)state;
-    (void)now;
-    (void)tracking;
 }
 
 static void closed(void *state, mh_tick now, mh_tick instant, const struct mh_estimate *estimate,
@@ -411,8 +377,6 @@ const struct mh_protocol mh_protocol_fixed = {
     .sent = sent,
     .timer = timer,
     .publish = publish,
-    .ask = ask,
-    .tell_tracking = tell_tracking,
     .closed = closed,
     .time_jumped = time_jumped,
     .count = count,

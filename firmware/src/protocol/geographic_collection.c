@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-#define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
-#define HURRIED_HELLOS 3             /* after the first, at an eighth, a quarter and half of the period */
+#define HURRIED_HELLOS 3 /* after the first, at an eighth, a quarter and half of the period */
 
 static const struct mh_protocol *const collection = &mh_protocol_collection;
 
@@ -128,16 +127,10 @@ static void hear_envelope(struct mh_geographic_collection *g, mh_tick now, const
 
 static void say_hello(struct mh_geographic_collection *g, mh_tick now)
 {
-    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
-                                       .as.hello = {.sender = (int32_t)g->node->id,
-                                                    .x_mm = g->node->place.x_mm,
-                                                    .y_mm = g->node->place.y_mm,
-                                                    .sequence = (int16_t)g->hellos}};
-    mh_link_broadcast(&g->link, &message);
-    mh_neighbours_age(&g->neighbours, now);
     const mh_tick period =
         g->hellos < HURRIED_HELLOS ? g->config->hello_period >> (HURRIED_HELLOS - g->hellos) : g->config->hello_period;
-    g->hellos = g->hellos < UINT16_MAX ? (uint16_t)(g->hellos + 1) : HELLOS_AGAIN;
+    mh_link_hello(&g->link, &g->hellos);
+    mh_neighbours_age(&g->neighbours, now);
     /* neighbours that have spoken at the same time do not do so again */
     g->hello_time = now + period - mh_spread(g->node->id, g->hellos, period / 4);
 }

@@ -40,6 +40,17 @@ void mh_link_broadcast(struct mh_link *link, const struct mh_message *message)
     mh_link_direct(link, MH_BROADCAST, message);
 }
 
+void mh_link_hello(struct mh_link *link, uint16_t *hellos)
+{
+    const struct mh_message hello = {.kind = MH_MESSAGE_HELLO,
+                                     .as.hello = {.sender = (int32_t)link->node->id,
+                                                  .x_mm = link->node->place.x_mm,
+                                                  .y_mm = link->node->place.y_mm,
+                                                  .sequence = (int16_t)*hellos}};
+    mh_link_broadcast(link, &hello);
+    *hellos = *hellos < UINT16_MAX ? (uint16_t)(*hellos + 1) : UINT8_MAX + 1;
+}
+
 /* ---- what was taken before ---- */
 
 /* MH_OK, MH_ERR_REPEATED or MH_ERR_NO_ROUTE, as in mh_link_take. */

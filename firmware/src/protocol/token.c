@@ -1,3 +1,4 @@
+#include "timers.h"
 #include "token_node.h"
 
 #include "motehound/geographic.h"
@@ -7,39 +8,26 @@
 
 #define HELLOS_AT_START                                                                                                \
     5 /* face routing needs two of each neighbour; where a tenth is lost, 1 pair in 2,000 lacks them */
-#define WELCOME_SPREAD 4000          /* ticks: over so many the neighbours of a newcomer spread their hellos */
-#define WELCOME_PAUSE 10000          /* ticks: nobody says hello to newcomers more often */
-#define LIST_PAUSE 50                /* ticks between a hello and the neighbours told of, and between lists of these */
-#define BELIEVED 3                   /* instants for which a token counts without news */
-#define MEMORY ((int32_t)1 << 30)    /* ticks: before the differences of times lose their meaning */
-#define HELLOS_AGAIN (UINT8_MAX + 1) /* after UINT16_MAX: neighbours see the low byte go on */
+#define WELCOME_SPREAD 4000       /* ticks: over so many the neighbours of a newcomer spread their hellos */
+#define WELCOME_PAUSE 10000       /* ticks: nobody says hello to newcomers more often */
+#define LIST_PAUSE 50             /* ticks between a hello and the neighbours told of, and between lists of these */
+#define BELIEVED 3                /* instants for which a token counts without news */
+#define MEMORY ((int32_t)1 << 30) /* ticks: before the differences of times lose their meaning */
 
 /* ---- timers ---- */
 
 void mh_token_set(struct mh_token_node *t, enum mh_token_timer timer, mh_tick time)
 {
-    t->due[timer] = time;
-    t->set = (uint16_t)(t->set | 1u << timer);
+    mh_timers_set(&t->set, t->due, timer, time);
 }
 
-void mh_token_clear(struct mh_token_node *t, enum mh_token_timer timer)
-{
-    t->set = (uint16_t)(t->set & ~(1u << timer));
-}
-
-static bool is_set(const struct mh_token_node *t, int timer) { return (t->set >> timer & 1u) != 0; }
+void mh_token_clear(struct mh_token_node *t, enum mh_token_timer timer) { mh_timers_clear(&t->set, timer); }
 
 static void arm(struct mh_token_node *t)
 {
     const struct mh_protocol_port *port = t->node->port;
     mh_tick next = t->time, retry;
-    bool wanted = false;
-    for (int timer = 0; timer < MH_TOKEN_TIMERS; timer++) {
-        if (is_set(t, timer) && (!wanted || mh_tick_before(t->due[timer], next))) {
-            next = t->due[timer];
-            wanted = true;
-        }
-    }
+    bool wanted = mh_timers_earliest(t->set, t->due, MH_TOKEN_TIMERS, &next);
     next = port->own(t->node->context, next);
     if (mh_link_alarm(&t->link, &retry) && (!wanted || mh_tick_before(retry, next))) {
         next = retry;
@@ -212,17 +200,11 @@ static void forget(struct mh_token_node *t)
 static void say_hello(struct mh_token_node *t)
 {
     const mh_tick period = t->config->hello_period, slot = MH_TOKEN_START / HELLOS_AT_START;
-    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
-                                       .as.hello = {.sender = (int32_t)t->node->id,
-                                                    .x_mm = t->node->place.x_mm,
-                                                    .y_mm = t->node->place.y_mm,
-                                                    .sequence = (int16_t)t->hellos}};
-    mh_link_broadcast(&t->link, &message);
+    mh_link_hello(&t->link, &t->hellos);
     mh_neighbours_age(&t->neighbours, t->now);
     mh_vicinity_age(&t->vicinity, t->now);
     forget(t);
     t->greeted = t->time;
-    t->hellos = t->hellos < UINT16_MAX ? (uint16_t)(t->hellos + 1) : HELLOS_AGAIN;
     if (t->hellos < HELLOS_AT_START) {
         mh_token_set(t, MH_TOKEN_HELLO, t->began + slot * t->hellos + mh_spread(t->node->id, t->hellos, slot / 2));
     } else {
@@ -467,9 +449,8 @@ static void timer(void *state, mh_tick now)
     if (!comes(t, now)) {
         return;
     }
-    for (int k = 0; k < MH_TOKEN_TIMERS; k++) {
-        if (is_set(t, k) && !mh_tick_before(t->time, t->due[k])) {
-            mh_token_clear(t, (enum mh_token_timer)k);
+    for (unsigned k = 0; k < MH_TOKEN_TIMERS; k++) {
+        if (mh_timers_take(&t->set, t->due, k, t->time)) {
             at[k](t);
         }
     }
@@ -485,22 +466,6 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     mh_token_sampled(t, measurement);
     arm(t);
     return MH_OK;
-}
-
-static enum mh_status ask(void *state, mh_tick now, const struct mh_interest *interest, mh_tick time)
-{
-    (void)state;
-    (void)now;
-    (void)interest;
-    (void)time;
-    return MH_ERR_ARGUMENT; /* heads ask by themselves */
-}
-
-static void tell_tracking(void *state, mh_tick now, bool tracking)
-{
-    (void)state;
-    (void)now;
-    (void)tracking;
 }
 
 static void closed(void *state, mh_tick now, mh_tick instant, const struct mh_estimate *estimate,
@@ -547,8 +512,6 @@ const struct mh_protocol mh_protocol_token = {
     .sent = sent,
     .timer = timer,
     .publish = publish,
-    .ask = ask,
-    .tell_tracking = tell_tracking,
     .closed = closed,
     .time_jumped = time_jumped,
     .count = count,
