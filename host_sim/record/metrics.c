@@ -153,7 +153,8 @@ static int add_search(struct errors *errors, const struct search *search, const 
 bool metric_is_over_runs(enum metric metric)
 {
     return metric == METRIC_POSITION_ERROR_MEDIAN_M || metric == METRIC_RATE_ERROR_MEDIAN ||
-           metric == METRIC_ERROR_OVER_CRLB || metric == METRIC_SMSE_M || metric == METRIC_POSITION_RMSE_WORST_M;
+           metric == METRIC_ERROR_OVER_CRLB || metric == METRIC_NEES_MEDIAN || metric == METRIC_SMSE_M ||
+           metric == METRIC_POSITION_RMSE_WORST_M;
 }
 
 int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)

@@ -7,7 +7,7 @@
 
 static inline void mh_timers_clear(uint16_t *set, unsigned timer) { *set = (uint16_t)(*set & ~(1u << timer)); }
 
-static inline bool mh_timers_is_set(uint16_t set, unsigned timer) { return (set >> timer & 1u) != 0; }
+static inline bool mh_timers_is_set(uint16_t set, unsigned timer) { return ((unsigned)set >> timer & 1u) != 0; }
 
 static inline void mh_timers_set(uint16_t *set, mh_tick *due, unsigned timer, mh_tick time)
 {
