@@ -223,8 +223,8 @@ static void increments_add_up_to_the_track(void)
     struct mh_gaussian centre = start(), track = start();
     mh_tick last = 0;
     for (int k = 1; k <= STEPS; k++) {
-        struct mh_measurement set[2] = {sample(k - 3), sample(k)};
         const bool first_late = k % 4 == 0; /* three ticks late */
+        struct mh_measurement set[2] = {sample(first_late ? k - 3 : k), sample(k)};
         step(k, first_late ? set : set + 1, first_late ? 2 : k % 4 == 1 ? 0 : 1);
         predict(&centre, 1);
         if (k % 2 > 0) {
