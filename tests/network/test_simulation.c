@@ -292,7 +292,8 @@ static void refuses_what_it_cannot_run(void)
     assert_refused(&scenario, "tracker.name: `range` works on ranges");
     scenario = e1();
     scenario.network.protocol = unknown;
-    assert_refused(&scenario, "network.protocol: `magic`, expected collection, direct, cluster, fixed, token or chatter");
+    assert_refused(&scenario,
+                   "network.protocol: `magic`, expected collection, direct, cluster, fixed, token or chatter");
     scenario = e1();
     scenario.tracker.diffusion_m2ps = -1;
     assert_refused(&scenario, "tracker.*");

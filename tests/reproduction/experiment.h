@@ -10,7 +10,7 @@ struct figures {
     double mean[METRIC_COUNT];          /* over the runs; NaN for what does not apply ... */
     double sd[METRIC_COUNT];            /* ... and their standard deviation */
     double median[METRIC_COUNT];
-    unsigned lost;                      /* runs whose track was lost */
+    unsigned lost; /* runs whose track was lost */
 };
 
 /* The scenario `name` with `settings`, "key=value" with a space between; to be freed. Fails the running test if there is no such thing. */
