@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import write_output
+from logs import program
 
 from motehound_tools import command, curves, experiment, figures, metrics, output, search_figures, sweep, sweep_figures
 from motehound_tools.failure import Failure
@@ -80,10 +81,9 @@ def titles_of(folder: Path) -> dict[str, str]:
     return {title: rest for title, _, rest in (str(image["alt"]).partition(". ") for image in page.images)}
 
 
-@pytest.mark.skipif("MOTEHOUND" not in os.environ, reason="no command to run")
 @pytest.mark.parametrize("scenario", ["zhang_m", "xu_real"])
 def test_page_of_searches_and_fixed_clusters(tmp_path: Path, scenario: str) -> None:
-    told = [os.environ["MOTEHOUND"], "run", scenario, "--runs", "2", "--out", str(tmp_path / "out")]
+    told = [str(program()), "run", scenario, "--runs", "2", "--out", str(tmp_path / "out")]
     subprocess.run(told, capture_output=True, check=True)
     titles = titles_of(tmp_path / "out")
     if scenario.startswith("zhang"):
@@ -142,9 +142,8 @@ def test_page_shows_the_network(folder: Path) -> None:
     assert drawn and "collision" in drawn.svg and "busy" in drawn.svg and "jammed" not in drawn.svg
 
 
-@pytest.mark.skipif("MOTEHOUND" not in os.environ, reason="no command to ask")
 def test_metrics_of_the_command_are_known() -> None:
-    told = subprocess.run([os.environ["MOTEHOUND"], "list", "--metrics"], capture_output=True, text=True, check=True)
+    told = subprocess.run([str(program()), "list", "--metrics"], capture_output=True, text=True, check=True)
     names = [line.split()[0] for line in told.stdout.splitlines()]
     causes = [name.removeprefix("energy_mj_per_sample_") for name in names if name.startswith("energy_mj_per_sample_")]
     assert causes == list(figures.CAUSES) and {f"energy_mj_{cause}" for cause in causes} < {*names}
