@@ -106,10 +106,9 @@ def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
                 time.sleep(0.05)
             yield json.loads(note.read_text())["address"]
         finally:
-            for process in reversed(begun):
-                process.terminate()
             for process in begun:
-                process.wait(30)
+                process.kill()  # asked to end, a worker waits for a scheduler that may be gone
+                process.wait()
 
 
 @pytest.mark.sweep
