@@ -399,28 +399,6 @@ static void sample(struct run *run)
     run->sample++;
 }
 
-static int make_network(struct run *run)
-{
-    const uint32_t nodes = (uint32_t)run->deployment.count;
-    const struct scenario_field field = scenario_field(run->scenario);
-    mh_node_id *ids = malloc((nodes + (size_t)1) * sizeof *ids);
-    struct mh_place *places = malloc((nodes + (size_t)1) * sizeof *places);
-    int result = -1;
-    if (ids && places) {
-        for (uint32_t i = 0; i < nodes; i++) {
-            const struct recorded_node *node = &run->deployment.nodes[i];
-            ids[i] = node->id;
-            places[i] = place_from_metres(node->x_m, node->y_m, node->z_m);
-        }
-        ids[nodes] = ids[nodes - 1] + 1;
-        places[nodes] = place_from_metres(field.sink_x_m, field.sink_y_m, 0);
-        result = vicinity_make(&run->vicinity, nodes + 1, ids, places, (double)run->election.radio_range_m);
-    }
-    free(ids);
-    free(places);
-    return result;
-}
-
 static int make_world(struct run *run, uint64_t seed, char *error, size_t error_size)
 {
     const struct scenario *scenario = run->scenario;
@@ -451,7 +429,8 @@ static int make_world(struct run *run, uint64_t seed, char *error, size_t error_
     run->answers = calloc(nodes, sizeof *run->answers);
     run->candidates = calloc(nodes, sizeof *run->candidates);
     if (!run->state || !run->detects || !run->range_m || !run->asked || !run->answers || !run->candidates ||
-        make_network(run) || ledger_make(&run->ledger, scenario, run->vicinity.count)) {
+        vicinity_of(&run->vicinity, scenario, &run->deployment, (double)run->election.radio_range_m) ||
+        ledger_make(&run->ledger, scenario, run->vicinity.count)) {
         return -1;
     }
     if (run->tracker.tracker->init(run->state, &run->tracker.config, run->election.interval) != MH_OK) {

@@ -151,28 +151,6 @@ static bool lead(struct run *run)
     return hand_over(run) == MH_OK;
 }
 
-static int make_network(struct run *run)
-{
-    const uint32_t nodes = (uint32_t)run->deployment.count;
-    const struct scenario_field field = scenario_field(run->scenario);
-    mh_node_id *ids = malloc((nodes + (size_t)1) * sizeof *ids);
-    struct mh_place *places = malloc((nodes + (size_t)1) * sizeof *places);
-    int result = -1;
-    if (ids && places) {
-        for (uint32_t i = 0; i < nodes; i++) {
-            const struct recorded_node *node = &run->deployment.nodes[i];
-            ids[i] = node->id;
-            places[i] = place_from_metres(node->x_m, node->y_m, node->z_m);
-        }
-        ids[nodes] = ids[nodes - 1] + 1;
-        places[nodes] = place_from_metres(field.sink_x_m, field.sink_y_m, 0);
-        result = vicinity_make(&run->vicinity, nodes + 1, ids, places, run->scenario->radio.range_m);
-    }
-    free(ids);
-    free(places);
-    return result;
-}
-
 static int make_world(struct run *run, uint64_t seed, char *error, size_t error_size)
 {
     const struct scenario *scenario = run->scenario;
@@ -198,7 +176,8 @@ static int make_world(struct run *run, uint64_t seed, char *error, size_t error_
     run->heard = calloc(nodes, sizeof *run->heard);
     run->members = calloc(nodes, sizeof *run->members);
     run->places = calloc(nodes, sizeof *run->places);
-    if (!run->state || !run->heard || !run->members || !run->places || make_network(run) ||
+    if (!run->state || !run->heard || !run->members || !run->places ||
+        vicinity_of(&run->vicinity, scenario, &run->deployment, scenario->radio.range_m) ||
         campaign_start(scenario, seed, &run->deployment, &run->head, error, error_size)) {
         return -1;
     }

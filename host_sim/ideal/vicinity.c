@@ -2,6 +2,7 @@
 
 #include "motehound/geographic.h"
 #include "radio/places.h"
+#include "roster.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,6 +78,29 @@ int vicinity_make(struct vicinity *vicinity, uint32_t count, const mh_node_id *i
         vicinity->next[i] = UNKNOWN;
     }
     return link_up(vicinity, radio_range_m);
+}
+
+int vicinity_of(struct vicinity *vicinity, const struct scenario *scenario, const struct deployment *deployment,
+                double radio_range_m)
+{
+    const uint32_t nodes = (uint32_t)deployment->count;
+    const struct scenario_field field = scenario_field(scenario);
+    mh_node_id *ids = malloc((nodes + (size_t)1) * sizeof *ids);
+    struct mh_place *places = malloc((nodes + (size_t)1) * sizeof *places);
+    int result = -1;
+    if (ids && places) {
+        for (uint32_t i = 0; i < nodes; i++) {
+            const struct recorded_node *node = &deployment->nodes[i];
+            ids[i] = node->id;
+            places[i] = place_from_metres(node->x_m, node->y_m, node->z_m);
+        }
+        ids[nodes] = ids[nodes - 1] + 1;
+        places[nodes] = place_from_metres(field.sink_x_m, field.sink_y_m, 0);
+        result = vicinity_make(vicinity, nodes + 1, ids, places, radio_range_m);
+    }
+    free(ids);
+    free(places);
+    return result;
 }
 
 void vicinity_free(struct vicinity *vicinity)

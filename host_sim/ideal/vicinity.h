@@ -4,6 +4,8 @@
 
 #include "motehound/geometry.h"
 #include "motehound/measurement.h"
+#include "scenario/scenario.h"
+#include "world/deployment.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,6 +24,10 @@ struct vicinity {
  * vicinity_free it in any case. */
 int vicinity_make(struct vicinity *vicinity, uint32_t count, const mh_node_id *ids, const struct mh_place *places,
                   double radio_range_m);
+
+/* The same of the nodes laid out and the scenario's sink, whose identifier is the largest node's plus one. */
+int vicinity_of(struct vicinity *vicinity, const struct scenario *scenario, const struct deployment *deployment,
+                double radio_range_m);
 
 void vicinity_free(struct vicinity *vicinity);
 
