@@ -94,7 +94,7 @@ int vicinity_of(struct vicinity *vicinity, const struct scenario *scenario, cons
             ids[i] = node->id;
             places[i] = place_from_metres(node->x_m, node->y_m, node->z_m);
         }
-        ids[nodes] = ids[nodes - 1] + 1;
+        ids[nodes] = deployment->nodes[nodes - 1].id + 1;
         places[nodes] = place_from_metres(field.sink_x_m, field.sink_y_m, 0);
         result = vicinity_make(vicinity, nodes + 1, ids, places, radio_range_m);
     }
