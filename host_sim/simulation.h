@@ -16,7 +16,19 @@ struct truth {
     double time_s, x_m, y_m;
     bool present; /* it is on its way (it has begun and not ended); else all but the time is 0 */
     double vx_mps, vy_mps;
-    double rate; /* at which it releases, in the unit of an estimate's: mL/s of gas; 0 where no estimate has one */
+    uint32_t target; /* number of the target, from 0 */
+    double rate;     /* at which it releases, in the unit of an estimate's: mL/s of gas; 0 where no estimate has one */
+};
+
+/* How the nodes around a target stand, as its new head tells them. */
+struct watch_news {
+    uint32_t target;                       /* its identifier in the network */
+    uint32_t number;                       /* of the target, from 0; UINT32_MAX: of none, or of a group */
+    mh_node_id head, prince;               /* prince MH_BROADCAST: none */
+    double prince_s;                       /* when the target enters the prince's sensing range */
+    double x_m, y_m, vx_mps, vy_mps, sd_m; /* the target now, as the head has it; both velocities 0: not known */
+    double extent_m;                       /* of a group, else 0 */
+    unsigned members;                      /* of a group, else 1 */
 };
 
 /* How a mote is. */
@@ -32,7 +44,7 @@ struct observer {
     void *context;
     /* Once for every mote, before all else: the nodes by id, then the sink, whose id is the largest. */
     void (*node)(void *context, mh_node_id id, const struct mh_place *place);
-    /* At every sampling instant. */
+    /* At every sampling instant, for each target. */
     void (*truth)(void *context, const struct truth *truth);
     /* Mote `head` has a position, told at time_s. `at_time`: truth at the sampling instant estimate->time, whose time in
      * seconds is at_time->time_s. `at_arrival`: truth at that instant less the estimate's age. Neither is NULL. */
@@ -48,6 +60,8 @@ struct observer {
     /* Who follows a track from now on: its head and those that it asks. `is_new`: it counts as a cluster formed. */
     void (*cluster)(void *context, double time_s, uint32_t track, mh_node_id head, const mh_node_id *members,
                     size_t count, bool is_new);
+    /* By the protocol `prince`: a new head tells those around it of its target. */
+    void (*watch)(void *context, double time_s, const struct watch_news *watch);
     /* A frame goes on the air. */
     void (*frame)(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
                   size_t length);

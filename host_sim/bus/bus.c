@@ -15,6 +15,7 @@
 #include "motehound_totals_t.h"
 #include "motehound_track_t.h"
 #include "motehound_truth_t.h"
+#include "motehound_watch_t.h"
 
 #include <fcntl.h>
 #include <math.h>
@@ -99,6 +100,7 @@ void bus_prepare(void)
     __motehound_totals_t_get_hash();
     __motehound_track_t_get_hash();
     __motehound_truth_t_get_hash();
+    __motehound_watch_t_get_hash();
 }
 
 int bus_open(struct bus *bus, int32_t run, const char *log_path, lcm_t *outside, double pace, char *error,
@@ -144,6 +146,7 @@ static void on_truth(void *context, const struct truth *truth)
     struct bus *bus = context;
     const motehound_truth_t message = {.time_s = truth->time_s,
                                        .run = bus->run,
+                                       .target = (int32_t)truth->target,
                                        .present = truth->present,
                                        .x_m = truth->x_m,
                                        .y_m = truth->y_m,
@@ -187,6 +190,16 @@ static void put_states(motehound_track_t *message, const struct mh_estimate *est
     message->rate = (double)estimate->rate;
 }
 
+static void put_group(motehound_track_t *message, const struct mh_estimate *estimate)
+{
+    message->mode = estimate->mode;
+    message->members = estimate->members;
+    message->extent_m = (double)estimate->extent;
+    for (size_t i = 0; i < MH_GROUP_MAX && i < sizeof message->of / sizeof message->of[0]; i++) {
+        message->of[i] = (int32_t)estimate->of[i];
+    }
+}
+
 static void put_truth(motehound_track_t *message, const struct truth *truth)
 {
     message->true_known = truth->present;
@@ -204,7 +217,8 @@ static motehound_track_t track_of(const struct bus *bus, mh_node_id head, const 
     motehound_track_t message = {
         .time_s = at_time->time_s,
         .run = bus->run,
-        .target = estimate->target,
+        .target = (int32_t)estimate->target,
+        .number = at_time->present ? (int32_t)at_time->target : -1,
         .x_m = origin_x + (double)estimate->position.x,
         .y_m = origin_y + (double)estimate->position.y,
         .vx_mps = (double)estimate->velocity.x,
@@ -221,6 +235,7 @@ static motehound_track_t track_of(const struct bus *bus, mh_node_id head, const 
     };
     put_truth(&message, at_time);
     put_states(&message, estimate);
+    put_group(&message, estimate);
     return message;
 }
 
@@ -251,7 +266,8 @@ static void on_sink(void *context, double time_s, const struct mh_estimate *esti
     motehound_track_t message = {
         .time_s = at_time->time_s,
         .run = bus->run,
-        .target = estimate->target,
+        .target = (int32_t)estimate->target,
+        .number = at_time->present ? (int32_t)at_time->target : -1,
         .x_m = x_m,
         .y_m = y_m,
         .vx_mps = (double)estimate->velocity.x,
@@ -295,6 +311,26 @@ static void on_cluster(void *context, double time_s, uint32_t track, mh_node_id 
     free(ids);
 }
 
+static void on_watch(void *context, double time_s, const struct watch_news *watch)
+{
+    struct bus *bus = context;
+    const motehound_watch_t message = {.time_s = time_s,
+                                       .run = bus->run,
+                                       .target = (int32_t)watch->target,
+                                       .number = (int32_t)watch->number,
+                                       .head = (int32_t)watch->head,
+                                       .prince = (int32_t)watch->prince,
+                                       .prince_s = watch->prince_s,
+                                       .x_m = watch->x_m,
+                                       .y_m = watch->y_m,
+                                       .vx_mps = watch->vx_mps,
+                                       .vy_mps = watch->vy_mps,
+                                       .sd_m = watch->sd_m,
+                                       .extent_m = watch->extent_m,
+                                       .members = (int32_t)watch->members};
+    PUBLISH(bus, BUS_WATCH, motehound_watch_t, message, time_s);
+}
+
 static void on_mote(void *context, double time_s, mh_node_id id, const struct mote_state *state)
 {
     struct bus *bus = context;
@@ -319,6 +355,7 @@ struct observer bus_observer(struct bus *bus)
         .sink = on_sink,
         .local = on_local,
         .cluster = heard || bus->searches ? on_cluster : NULL,
+        .watch = heard ? on_watch : NULL,
         .frame = heard ? on_frame : NULL,
         .mote = heard ? on_mote : NULL,
     };

@@ -189,11 +189,18 @@ static motehound_worker_estimate_t estimate_message(const struct mh_estimate *es
         .age_s = (double)estimate->age,
         .measurements = estimate->measurements,
         .target = estimate->target,
+        .near = estimate->near,
+        .extent_m = (double)estimate->extent,
         .rate = (double)estimate->rate,
+        .members = estimate->members,
+        .mode = estimate->mode,
         .states = estimate->states,
         .flags = estimate->flags};
     for (size_t i = 0; i < COVARIANCE_MORE; i++) {
         message.covariance_more[i] = (double)estimate->covariance_more[i];
+    }
+    for (size_t i = 0; i < MH_GROUP_MAX; i++) {
+        message.of[i] = estimate->of[i];
     }
     return message;
 }
@@ -213,12 +220,19 @@ static struct mh_estimate estimate_read(const motehound_worker_estimate_t *messa
         .stored_velocity = {(mh_real)message->stored_velocity_mps[0], (mh_real)message->stored_velocity_mps[1]},
         .age = (mh_real)message->age_s,
         .measurements = (uint16_t)message->measurements,
-        .target = (uint8_t)message->target,
+        .target = (uint32_t)message->target,
+        .near = (uint32_t)message->near,
+        .extent = (mh_real)message->extent_m,
         .rate = (mh_real)message->rate,
+        .members = (uint8_t)message->members,
+        .mode = (uint8_t)message->mode,
         .states = (uint8_t)message->states,
-        .flags = (uint8_t)message->flags};
+        .flags = (uint16_t)message->flags};
     for (size_t i = 0; i < COVARIANCE_MORE; i++) {
         estimate.covariance_more[i] = (mh_real)message->covariance_more[i];
+    }
+    for (size_t i = 0; i < MH_GROUP_MAX; i++) {
+        estimate.of[i] = (uint32_t)message->of[i];
     }
     return estimate;
 }

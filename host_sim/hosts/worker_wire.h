@@ -96,7 +96,7 @@ WORKER_CODEC(window, "8888[8141[4]{1}]")
 WORKER_CODEC(count, "888")
 WORKER_CODEC(done, "8888[814418{1}{444"
                    "88888888888888888888888"
-                   "4444}]")
+                   "488888884444}]")
 WORKER_CODEC(totals, "8888[8][8][8]")
 WORKER_CODEC(error, "88s")
 WORKER_CODEC(release, "8")

@@ -110,6 +110,22 @@
 #endif
 #endif
 
+/* Targets that a node follows at once, up to 300 bytes each in the protocol `prince`; targets of a group, which travel with its track; and sources whose sound is
+ * told apart in one fit, whose work grows with the cube. */
+#ifndef MH_TARGETS_MAX
+#ifdef __AVR__
+#define MH_TARGETS_MAX 1
+#else
+#define MH_TARGETS_MAX 4
+#endif
+#endif
+#ifndef MH_GROUP_MAX
+#define MH_GROUP_MAX 4
+#endif
+#ifndef MH_SOURCES_MAX
+#define MH_SOURCES_MAX (MH_GROUP_MAX + 1)
+#endif
+
 /* Estimates that are fused at once, and so clusters of a fusion centre: some 130 bytes each there, 85 bytes of stack where weights are searched. */
 #ifndef MH_FUSED_MAX
 #ifdef __AVR__
@@ -287,6 +303,13 @@
 #endif
 #if MH_FUSED_MAX < 2 || MH_FUSED_MAX > 16
 #error "MH_FUSED_MAX must be 2 to 16: feedback has a bit for each cluster in two bytes"
+#endif
+#if MH_TARGETS_MAX < 1 || MH_TARGETS_MAX > 16 || MH_GROUP_MAX < 2 || MH_GROUP_MAX > 8
+#error                                                                                                                 \
+    "MH_TARGETS_MAX must be 1 to 16: the table is searched linearly; MH_GROUP_MAX 2 to 8: its targets travel in one message"
+#endif
+#if MH_SOURCES_MAX < 2 || MH_SOURCES_MAX > 8
+#error "MH_SOURCES_MAX must be 2 to 8: a fit solves twice as many equations at once"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"

@@ -12,6 +12,13 @@
 
 #include <stddef.h>
 
+/* A track as save() writes it, and whose it is. */
+struct mh_saved_track {
+    uint32_t target;
+    const uint8_t *bytes;
+    size_t length;
+};
+
 struct mh_tracker {
     const char *name;
     size_t state_size;  /* bytes of the state that init() fills */
@@ -58,6 +65,19 @@ struct mh_tracker {
     /* What the centre has made of all summaries of `time` -> the track. Errors: MH_ERR_CORRUPT (not what a centre writes), MH_ERR_TIME (too old to
      * be of use); the state is as it was. With summarise. */
     enum mh_status (*correct)(void *state, mh_tick time, const uint8_t *bytes, size_t length);
+
+    /* For several targets, each with a state of its own; NULL where the tracker knows of one only. */
+
+    /* Before a step: this track is that of `target`, and `others` are followed nearby, as they were last saved; the next step reckons with their
+     * share in what was measured. The bytes stay valid until then. Without this call a step takes everything for its own target's. Errors: MH_ERR_CORRUPT (not what save writes;
+     * the others are not reckoned with). */
+    enum mh_status (*among)(void *state, uint32_t target, const struct mh_saved_track *others, size_t count);
+    /* This track and `other` go on as one group, under the lower identifier. Errors: MH_ERR_CAPACITY (more than MH_GROUP_MAX targets), MH_ERR_CORRUPT,
+     * MH_NONE (no track). */
+    enum mh_status (*join)(void *state, const struct mh_saved_track *other);
+    /* Of a group whose last estimate has MH_ESTIMATE_SPLIT: the track of part `part`, from 0 -> its identifier, bytes[0 .. *length) as save writes them.
+     * Errors: MH_NONE (it has no such part). */
+    enum mh_status (*part)(const void *state, uint8_t part, uint32_t *target, uint8_t *bytes, size_t *length);
 };
 
 #endif

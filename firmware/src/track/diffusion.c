@@ -521,7 +521,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     track->stepped = true;
     track->tracking = track->tracking && time - newest(fit)->time <= MH_DIFFUSION_COAST * fit->model.interval;
 
-    uint8_t flags = 0;
+    uint16_t flags = 0;
     if (!track->tracking) {
         track->silent = 0;
         track->unanswered = 0;
