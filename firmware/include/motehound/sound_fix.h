@@ -1,0 +1,75 @@
+/* Where a target is, by the energies of its sound at one instant.
+ *
+ * The default localiser: the median of triples of the five strongest nodes, whose tables may be as coarse as they like, and two iterations of weighted
+ * Gauss-Newton on all of them; within 3 % of the Cramer-Rao bound. Beside it the simpler ones to compare with. All of them take one target, alone; for several see
+ * joint_sources.h.
+ *
+ * All places are relative to an origin near the work, m. All functions check that what they are given is finite, and leave the position untouched after an
+ * error: MH_ERR_NOT_FINITE, MH_ERR_TOO_FEW (as each says), MH_ERR_ARGUMENT (configuration). */
+#ifndef MOTEHOUND_SOUND_FIX_H
+#define MOTEHOUND_SOUND_FIX_H
+
+#include "motehound/circles.h"
+#include "motehound/distance_table.h"
+#include "motehound/measurement.h"
+#include "motehound/sound.h"
+#include "motehound/status.h"
+
+#include <stddef.h>
+
+/* What one node heard. */
+struct mh_heard {
+    struct mh_vec2 place;
+    mh_real energy;
+};
+
+/* The `capacity` strongest of `measurements` (value: energy), strongest first, the first of equals first -> how many. count * capacity steps at most. */
+size_t mh_strongest(const struct mh_measurement *measurements, size_t count, const struct mh_place *origin,
+                    struct mh_heard *heard, size_t capacity);
+
+/* Strongest first. Insertion sort: quick where the order is nearly right. */
+void mh_heard_sort(struct mh_heard *heard, size_t count);
+
+/* Binary centroid: the mean place of the nodes. Too few: none. */
+enum mh_status mh_heard_centroid(const struct mh_heard *heard, size_t count, struct mh_vec2 *position);
+
+/* Distance measurement (Han 2.1) with the first three, which should be the strongest; of two nodes the point of two circles, of one its place. Too few: none. */
+enum mh_status mh_distance_fix(const struct mh_heard *heard, size_t count, const struct mh_distance_table *table,
+                               enum mh_circles_variant variant, struct mh_vec2 *position);
+
+/* Median of triples of the first five, which should be the strongest; of three nodes and fewer mh_distance_fix() with variant uniform. Too few: none. */
+enum mh_status mh_median_fix(const struct mh_heard *heard, size_t count, const struct mh_distance_table *table,
+                             struct mh_vec2 *position);
+
+/* What is known of the position besides: independent of what is heard, the same in all directions. */
+struct mh_position_prior {
+    struct mh_vec2 mean;
+    mh_real sd_m; /* > 0 */
+};
+
+/* Gauss-Newton from *position with all that was heard, weighted by the model's variances:
+ *
+ *     r_i = sqrt(C / max(y_i, 1/4)) - d_i,   var r_i = d_i^2 (tau^2 + (eta / e_i)^2) / 4
+ *
+ * each step of at most 15 m, until one is below 1 cm. `prior` may be NULL. `information`, unless NULL: sum of u u' / var r at the last point linearised about,
+ * the prior's share included; Fisher's information where that is the truth. Cost: iterations (1 to 255) times one root and two divisions a node. Two iterations are
+ * enough. Too few: none and no prior. */
+enum mh_status mh_sound_refine(const struct mh_sound *sound, const struct mh_heard *heard, size_t count,
+                               const struct mh_position_prior *prior, uint8_t iterations, struct mh_vec2 *position,
+                               struct mh_sym2 *information);
+
+/* The default localiser: mh_median_fix() with undivided distances, then mh_sound_refine() twice. Too few: none. */
+enum mh_status mh_sound_fix(const struct mh_sound *sound, const struct mh_heard *heard, size_t count,
+                            const struct mh_position_prior *prior, struct mh_vec2 *position,
+                            struct mh_sym2 *information);
+
+/* Maximum likelihood by a grid of 1 m over the places from which all could have heard it, and 10 m around: a baseline, a hundred times as dear. */
+enum mh_likelihood {
+    MH_LIKELIHOOD_CONSTANT, /* sum (y - e)^2, as if all energies were equally certain (Han, Eqs. (2-3), (2-4)) */
+    MH_LIKELIHOOD_FULL      /* that of ln y with the model's variance; then on grids down to 0.1 m about the best */
+};
+/* At most 120 x 120 points (coarser then), each with a division a node, and in full with two logarithms more. Too few: none. */
+enum mh_status mh_likeliest(const struct mh_sound *sound, const struct mh_heard *heard, size_t count,
+                            enum mh_likelihood likelihood, struct mh_vec2 *position);
+
+#endif
