@@ -126,6 +126,23 @@
 #define MH_SOURCES_MAX (MH_GROUP_MAX + 1)
 #endif
 
+/* Newly found sources are counted on so many cells a side of a square, 4 bytes of stack each, from so many nodes, 28 bytes each. Fewer cells than 16
+ * count three sources for two more often. */
+#ifndef MH_COUNT_SIDE
+#ifdef __AVR__
+#define MH_COUNT_SIDE 8
+#else
+#define MH_COUNT_SIDE 16
+#endif
+#endif
+#ifndef MH_COUNT_NODES_MAX
+#ifdef __AVR__
+#define MH_COUNT_NODES_MAX 12
+#else
+#define MH_COUNT_NODES_MAX 32
+#endif
+#endif
+
 /* Estimates that are fused at once, and so clusters of a fusion centre: some 130 bytes each there, 85 bytes of stack where weights are searched. */
 #ifndef MH_FUSED_MAX
 #ifdef __AVR__
@@ -310,6 +327,10 @@
 #endif
 #if MH_SOURCES_MAX < 2 || MH_SOURCES_MAX > 8
 #error "MH_SOURCES_MAX must be 2 to 8: a fit solves twice as many equations at once"
+#endif
+#if MH_COUNT_SIDE < 4 || MH_COUNT_SIDE > 32 || MH_COUNT_NODES_MAX < 4 || MH_COUNT_NODES_MAX > 64
+#error                                                                                                                 \
+    "MH_COUNT_SIDE must be 4 to 32, MH_COUNT_NODES_MAX 4 to 64: both are on the stack, and the work grows with the nodes and the square of the side"
 #endif
 #if MH_HOPS_MAX < 1 || MH_HOPS_MAX > 127
 #error "MH_HOPS_MAX must be 1 to 127: it travels as a signed byte"
