@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 /* Every file that a run may leave; summary.json, which says that the others are whole, last. */
-static const char *const result_files[] = {"runs.csv",      "track.csv",  "local.csv",   "nodes.csv",
-                                           "scenario.json", "events.lcm", "summary.json"};
+static const char *const result_files[] = {"runs.csv",  "track.csv",     "local.csv",  "watch.csv",   "truth.csv",
+                                           "nodes.csv", "scenario.json", "events.lcm", "summary.json"};
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
 /* Path of an output folder, with room for the names within. */

@@ -4,7 +4,6 @@
 
 #include "motehound_cluster_t.h"
 #include "motehound_totals_t.h"
-#include "motehound_truth_t.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,44 +25,26 @@ static bool grow(void **array, size_t count, size_t *capacity, size_t size)
     return true;
 }
 
-static void on_track(const lcm_recv_buf_t *buffer, const char *channel, void *context)
-{
-    (void)channel;
-    struct recorder *recorder = context;
-    if (grow((void **)&recorder->tracks, recorder->track_count, &recorder->track_capacity, sizeof *recorder->tracks) &&
-        motehound_track_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->tracks[recorder->track_count]) >=
-            0) {
-        recorder->track_count++;
-    } else {
-        recorder->failed = true;
+/* Keep every message of a channel: `list` and its number and room, named after `one`, are members of struct recorder. */
+#define KEEPER(type, list, one)                                                                                        \
+    static void on_##one(const lcm_recv_buf_t *buffer, const char *channel, void *context)                             \
+    {                                                                                                                  \
+        (void)channel;                                                                                                 \
+        struct recorder *recorder = context;                                                                           \
+        if (grow((void **)&recorder->list, recorder->one##_count, &recorder->one##_capacity,                           \
+                 sizeof *recorder->list) &&                                                                            \
+            type##_decode(buffer->data, 0, (int)buffer->data_size, &recorder->list[recorder->one##_count]) >= 0) {     \
+            recorder->one##_count++;                                                                                   \
+        } else {                                                                                                       \
+            recorder->failed = true;                                                                                   \
+        }                                                                                                              \
     }
-}
 
-static void on_sink(const lcm_recv_buf_t *buffer, const char *channel, void *context)
-{
-    (void)channel;
-    struct recorder *recorder = context;
-    if (grow((void **)&recorder->sinks, recorder->sink_count, &recorder->sink_capacity, sizeof *recorder->sinks) &&
-        motehound_track_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->sinks[recorder->sink_count]) >=
-            0) {
-        recorder->sink_count++;
-    } else {
-        recorder->failed = true;
-    }
-}
-
-static void on_local(const lcm_recv_buf_t *buffer, const char *channel, void *context)
-{
-    (void)channel;
-    struct recorder *recorder = context;
-    if (grow((void **)&recorder->locals, recorder->local_count, &recorder->local_capacity, sizeof *recorder->locals) &&
-        motehound_local_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->locals[recorder->local_count]) >=
-            0) {
-        recorder->local_count++;
-    } else {
-        recorder->failed = true;
-    }
-}
+KEEPER(motehound_track_t, tracks, track)
+KEEPER(motehound_track_t, sinks, sink)
+KEEPER(motehound_local_t, locals, local)
+KEEPER(motehound_watch_t, watches, watch)
+KEEPER(motehound_node_t, nodes, node)
 
 static void on_cluster(const lcm_recv_buf_t *buffer, const char *channel, void *context)
 {
@@ -86,18 +67,6 @@ static void on_cluster(const lcm_recv_buf_t *buffer, const char *channel, void *
     motehound_cluster_t_decode_cleanup(&cluster);
 }
 
-static void on_node(const lcm_recv_buf_t *buffer, const char *channel, void *context)
-{
-    (void)channel;
-    struct recorder *recorder = context;
-    if (grow((void **)&recorder->nodes, recorder->node_count, &recorder->node_capacity, sizeof *recorder->nodes) &&
-        motehound_node_t_decode(buffer->data, 0, (int)buffer->data_size, &recorder->nodes[recorder->node_count]) >= 0) {
-        recorder->node_count++;
-    } else {
-        recorder->failed = true;
-    }
-}
-
 static void on_truth(const lcm_recv_buf_t *buffer, const char *channel, void *context)
 {
     (void)channel;
@@ -107,7 +76,16 @@ static void on_truth(const lcm_recv_buf_t *buffer, const char *channel, void *co
         recorder->failed = true;
         return;
     }
-    if (truth.present) {
+    if (!truth.present) {
+        return;
+    }
+    if (!grow((void **)&recorder->truths, recorder->truth_count, &recorder->truth_capacity, sizeof *recorder->truths)) {
+        recorder->failed = true;
+        return;
+    }
+    recorder->truths[recorder->truth_count++] = truth;
+    recorder->targets = truth.target >= recorder->targets ? truth.target + 1 : recorder->targets;
+    if (recorder->samples == 0 || truth.time_s > recorder->last_s) {
         recorder->first_s = recorder->samples > 0 ? recorder->first_s : truth.time_s;
         recorder->last_s = truth.time_s;
         recorder->samples++;
@@ -141,6 +119,7 @@ int recorder_subscribe(struct recorder *recorder, lcm_t *lcm)
                        lcm_subscribe(lcm, BUS_SINK, on_sink, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_LOCAL, on_local, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_CLUSTER, on_cluster, recorder) != NULL &&
+                       lcm_subscribe(lcm, BUS_WATCH, on_watch, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TRUTH, on_truth, recorder) != NULL &&
                        lcm_subscribe(lcm, BUS_TOTALS, on_totals, recorder) != NULL;
     return sound ? 0 : -1;
@@ -152,6 +131,8 @@ void recorder_free(struct recorder *recorder)
     free(recorder->sinks);
     free(recorder->locals);
     free(recorder->heard);
+    free(recorder->watches);
+    free(recorder->truths);
     free(recorder->nodes);
     *recorder = (struct recorder){0};
 }

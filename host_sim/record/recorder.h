@@ -5,6 +5,8 @@
 #include "motehound_local_t.h"
 #include "motehound_node_t.h"
 #include "motehound_track_t.h"
+#include "motehound_truth_t.h"
+#include "motehound_watch_t.h"
 #include "totals.h"
 
 #include <lcm/lcm.h>
@@ -25,9 +27,14 @@ struct recorder {
     size_t local_count, local_capacity;
     struct heard *heard; /* in the order they came */
     size_t heard_count, heard_capacity;
+    motehound_watch_t *watches; /* how the nodes around targets stood, likewise */
+    size_t watch_count, watch_capacity;
+    motehound_truth_t *truths; /* of the targets that were present, likewise */
+    size_t truth_count, truth_capacity;
+    int32_t targets;         /* one more than the largest number among them */
     motehound_node_t *nodes; /* the motes, where the bus tells them */
     size_t node_count, node_capacity;
-    size_t samples;             /* sampling instants at which the source was present */
+    size_t samples;             /* sampling instants at which a target was present */
     double first_s, last_s;     /* of these */
     double totals[TOTAL_COUNT]; /* of the run, all zero until it has ended */
     bool failed;                /* no memory, or a message that is none of ours */

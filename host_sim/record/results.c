@@ -51,7 +51,7 @@ int results_open(struct results *results, const char *out, const char *scenario_
     fputs(
         "run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,cov_xx_m2,cov_xy_m2,cov_yy_m2,"
         "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags,head,sink_x_m,sink_y_m,states,rate,"
-        "true_rate\n",
+        "true_rate,number,mode,members,extent_m\n",
         results->track);
     return 0;
 }
@@ -63,12 +63,15 @@ const char *results_log_path(const struct results *results, unsigned run, char p
     return results->log != NULL ? output_path(&results->output, name, path) : NULL;
 }
 
+/* Of a target or a node, which fields are left empty for. */
+static double number_of(int32_t id) { return id >= 0 ? id : (double)NAN; }
+
 /* `sink`: what the sink had at that instant, or NULL. */
 static void put_track(FILE *file, unsigned run, const motehound_track_t *track, const motehound_track_t *sink)
 {
     const bool covariance = track->cov_xx_m2 > 0;
     const double none = (double)NAN;
-    fprintf(file, "%u,%ld", run, (long)track->target);
+    fprintf(file, "%u,%lu", run, (unsigned long)(uint32_t)track->target);
     put_number(file, track->time_s);
     put_number(file, track->x_m);
     put_number(file, track->y_m);
@@ -92,31 +95,56 @@ static void put_track(FILE *file, unsigned run, const motehound_track_t *track, 
     fprintf(file, ",%ld", (long)track->states);
     put_number(file, track->rate);
     put_number(file, track->true_known ? track->true_rate : none);
+    put_number(file, number_of(track->number));
+    fprintf(file, ",%ld,%ld", (long)track->mode, (long)track->members);
+    put_number(file, track->members > 1 ? track->extent_m : none);
     fputc('\n', file);
 }
 
-/* Both lists are ordered by time. */
+/* What the sink had of a track at its instant, or NULL. Both lists are ordered by time; `from` is where the search begins, and moves on. */
+static const motehound_track_t *sink_of(const struct recorder *recorder, const motehound_track_t *track, size_t *from)
+{
+    const motehound_track_t *sinks = recorder->sinks;
+    while (*from < recorder->sink_count && sinks[*from].time_s < track->time_s - SAME_INSTANT_S) {
+        (*from)++;
+    }
+    for (size_t s = *from; s < recorder->sink_count && sinks[s].time_s <= track->time_s + SAME_INSTANT_S; s++) {
+        if (sinks[s].target == track->target) {
+            return &sinks[s];
+        }
+    }
+    return NULL;
+}
+
 static void put_tracks(const struct results *results, const struct recorder *recorder)
 {
-    size_t s = 0;
+    size_t from = 0;
     for (size_t i = 0; i < recorder->track_count; i++) {
         const motehound_track_t *track = &recorder->tracks[i];
-        while (s < recorder->sink_count && recorder->sinks[s].time_s < track->time_s - SAME_INSTANT_S) {
-            s++;
-        }
-        const bool known = s < recorder->sink_count && recorder->sinks[s].time_s <= track->time_s + SAME_INSTANT_S;
-        put_track(results->track, results->run_count, track, known ? &recorder->sinks[s] : NULL);
+        put_track(results->track, results->run_count, track, sink_of(recorder, track, &from));
     }
+}
+
+/* The file `*file` of all runs, begun with its header when there is first something to put. */
+static int begin_file(const struct results *results, FILE **file, const char *name, const char *header, char *error,
+                      size_t error_size)
+{
+    if (*file == NULL) {
+        *file = output_create(&results->output, name, error, error_size);
+        if (*file == NULL) {
+            return -1;
+        }
+        fputs(header, *file);
+    }
+    return 0;
 }
 
 static int put_locals(struct results *results, const struct recorder *recorder, char *error, size_t error_size)
 {
-    if (recorder->local_count > 0 && results->local == NULL) {
-        results->local = output_create(&results->output, "local.csv", error, error_size);
-        if (results->local == NULL) {
-            return -1;
-        }
-        fputs("run,cluster,time_s,x_m,y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,head\n", results->local);
+    if (recorder->local_count > 0 &&
+        begin_file(results, &results->local, "local.csv",
+                   "run,cluster,time_s,x_m,y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,head\n", error, error_size) != 0) {
+        return -1;
     }
     for (size_t i = 0; i < recorder->local_count; i++) {
         const motehound_track_t *track = &recorder->locals[i].track;
@@ -131,6 +159,59 @@ static int put_locals(struct results *results, const struct recorder *recorder, 
         put_number(results->local, track->vx_mps);
         put_number(results->local, track->vy_mps);
         fprintf(results->local, ",%lu\n", (unsigned long)(uint32_t)track->head);
+    }
+    return 0;
+}
+
+static int put_watches(struct results *results, const struct recorder *recorder, char *error, size_t error_size)
+{
+    if (recorder->watch_count > 0 &&
+        begin_file(results, &results->watch, "watch.csv",
+                   "run,time_s,target,number,head,prince,prince_s,x_m,y_m,vx_mps,vy_mps,sd_m,extent_m,members\n", error,
+                   error_size) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < recorder->watch_count; i++) {
+        const motehound_watch_t *watch = &recorder->watches[i];
+        const double none = (double)NAN;
+        const bool moves = watch->vx_mps != 0 || watch->vy_mps != 0;
+        fprintf(results->watch, "%u", results->run_count);
+        put_number(results->watch, watch->time_s);
+        fprintf(results->watch, ",%lu", (unsigned long)(uint32_t)watch->target);
+        put_number(results->watch, number_of(watch->number));
+        fprintf(results->watch, ",%lu", (unsigned long)(uint32_t)watch->head);
+        put_number(results->watch, number_of(watch->prince));
+        put_number(results->watch, watch->prince >= 0 ? watch->prince_s : none);
+        put_number(results->watch, watch->x_m);
+        put_number(results->watch, watch->y_m);
+        put_number(results->watch, moves ? watch->vx_mps : none);
+        put_number(results->watch, moves ? watch->vy_mps : none);
+        put_number(results->watch, watch->sd_m);
+        put_number(results->watch, watch->members > 1 ? watch->extent_m : none);
+        fprintf(results->watch, ",%ld\n", (long)watch->members);
+    }
+    return 0;
+}
+
+static int put_truths(struct results *results, const struct recorder *recorder, char *error, size_t error_size)
+{
+    if (recorder->targets < 2) { /* beside its estimates is enough */
+        return 0;
+    }
+    if (begin_file(results, &results->truth, "truth.csv", "run,time_s,target,x_m,y_m,vx_mps,vy_mps\n", error,
+                   error_size) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < recorder->truth_count; i++) {
+        const motehound_truth_t *truth = &recorder->truths[i];
+        fprintf(results->truth, "%u", results->run_count);
+        put_number(results->truth, truth->time_s);
+        fprintf(results->truth, ",%ld", (long)truth->target);
+        put_number(results->truth, truth->x_m);
+        put_number(results->truth, truth->y_m);
+        put_number(results->truth, truth->vx_mps);
+        put_number(results->truth, truth->vy_mps);
+        fputc('\n', results->truth);
     }
     return 0;
 }
@@ -195,6 +276,8 @@ int results_add(struct results *results, uint64_t seed, const struct scenario *s
         return fail(error, error_size, "run %u: no memory", results->run_count);
     }
     if (put_locals(results, recorder, error, error_size) != 0 ||
+        put_watches(results, recorder, error, error_size) != 0 ||
+        put_truths(results, recorder, error, error_size) != 0 ||
         (results->run_count == 0 && put_nodes(results, recorder, error, error_size) != 0) ||
         (results->log != NULL && take_log(results, error, error_size) != 0)) {
         return -1;
@@ -278,7 +361,7 @@ static int put_json(struct results *results, const char *name, json_t *whole, ch
 
 int results_commit(struct results *results, const char *version, char *error, size_t error_size)
 {
-    const char *names[7] = {"runs.csv", "track.csv", "nodes.csv", "summary.json"};
+    const char *names[9] = {"runs.csv", "track.csv", "nodes.csv", "summary.json"};
     size_t count = 4;
     const bool logged = results->log != NULL;
     bool sound = put_json(results, "summary.json", summary(results, version), error, error_size) == 0 &&
@@ -288,9 +371,15 @@ int results_commit(struct results *results, const char *version, char *error, si
         names[count++] = "scenario.json";
         sound = put_json(results, "scenario.json", scenario_json(results->scenario), error, error_size) == 0;
     }
-    if (sound && results->local != NULL) {
-        names[count++] = "local.csv";
-        sound = output_sync(results->local, "local.csv", error, error_size) == 0;
+    const struct {
+        FILE *file;
+        const char *name;
+    } further[] = {{results->local, "local.csv"}, {results->watch, "watch.csv"}, {results->truth, "truth.csv"}};
+    for (size_t i = 0; sound && i < sizeof further / sizeof further[0]; i++) {
+        if (further[i].file != NULL) {
+            names[count++] = further[i].name;
+            sound = output_sync(further[i].file, further[i].name, error, error_size) == 0;
+        }
     }
     if (sound && logged) {
         names[count++] = "events.lcm";
@@ -305,14 +394,11 @@ int results_commit(struct results *results, const char *version, char *error, si
 
 void results_discard(struct results *results)
 {
-    if (results->runs != NULL) {
-        fclose(results->runs);
-    }
-    if (results->track != NULL) {
-        fclose(results->track);
-    }
-    if (results->local != NULL) {
-        fclose(results->local);
+    FILE *const files[] = {results->runs, results->track, results->local, results->watch, results->truth};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (files[i] != NULL) {
+            fclose(files[i]);
+        }
     }
     if (results->log != NULL) {
         lcm_eventlog_destroy(results->log);

@@ -83,11 +83,31 @@ def plain(value: Any) -> Any:
 # CSV
 
 
+def fixed_length(message: Any, name: str) -> int | None:
+    """Of a field that is an array of fixed length, but for bytes."""
+    dimensions = message.__dimensions__[message.__slots__.index(name)]
+    size = dimensions[0] if dimensions else None
+    return size if isinstance(size, int) and not isinstance(getattr(message, name), bytes) else None
+
+
+def columns(message: Any) -> list[str]:
+    """One a field, of an array of fixed length one an element."""
+    names: list[str] = []
+    for name in message.__slots__:
+        size = fixed_length(message, name)
+        names += [UNITS.get(name, name)] if size is None else [f"{name}_{index}" for index in range(size)]
+    return names
+
+
 def rows(message: Any) -> Iterator[list[Any]]:
     """One row; where a type has arrays of variable length, one row for each of their elements, and one if there are none."""
-    lists = [value for name in message.__slots__ if isinstance(value := getattr(message, name), (list, tuple))]
-    for index in range(max([1, *map(len, lists)])):
-        yield [cell(message, name, index) for name in message.__slots__]
+    fields = [(name, getattr(message, name), fixed_length(message, name)) for name in message.__slots__]
+    lists = [len(value) for _, value, size in fields if size is None and isinstance(value, (list, tuple))]
+    for index in range(max([1, *lists])):
+        row: list[Any] = []
+        for name, value, size in fields:
+            row += [cell(message, name, index)] if size is None else value
+        yield row
 
 
 def cell(message: Any, name: str, index: int) -> Any:
@@ -122,8 +142,7 @@ def to_csv(log: EventLog, out: Path, tally: Tally) -> None:
                     name = f"{stem}_{len(taken)}"
                 stream = files.enter_context(files.enter_context(whole(out / f"{name}.csv")).open("w", newline=""))
                 writer = csv.writer(stream, lineterminator="\n")
-                header = [UNITS.get(field, field) for field in message.__slots__]
-                writer.writerow(["log_time_s", *header, *(["kind"] if framed else [])])
+                writer.writerow(["log_time_s", *columns(message), *(["kind"] if framed else [])])
                 tables[key] = name, writer
             for row in rows(message):
                 extra = [messages.radio_kind(message)] if framed else []

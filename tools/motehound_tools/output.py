@@ -16,7 +16,7 @@ from .scenario import Array, Scenario
 TRACK_COLUMNS = ("run", "target", "time_s", "x_m", "y_m", "raw_x_m", "raw_y_m", "sd_m", "true_x_m", "true_y_m")
 OPTIONAL_COLUMNS = (
     *("vx_mps", "vy_mps", "cov_xx_m2", "cov_xy_m2", "cov_yy_m2", "measurements", "arrival_time_s"),
-    *("head", "sink_x_m", "sink_y_m", "states", "rate", "true_rate"),
+    *("head", "sink_x_m", "sink_y_m", "states", "rate", "true_rate", "number", "mode", "members", "extent_m"),
 )
 STATISTICS = ("mean", "std", "median", "p95", "n")
 

@@ -73,7 +73,7 @@ def write_output(folder: Path, runs: int = 3, samples: int = 20, error_m: float 
                 raw = true + 3.0 * error_m * random.standard_normal(2)
                 table.writerow(
                     [run, 0, time, x, y, *raw, error_m, *true, 0.5, 0.5, error_m**2, 0.0, error_m**2, 12, time - 1.0]
-                    + ["", "", "", 2, 0.0, 0.0]
+                    + ["", "", "", 2, 0.0, 0.0, 0, 0, 0, ""]
                 )
     (folder / "runs.csv").write_text("run,seed\n" + "".join(f"{run},{run}\n" for run in range(runs)))
     (folder / "summary.json").write_text(

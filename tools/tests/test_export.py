@@ -52,6 +52,8 @@ def test_csv_has_every_message_and_value(tmp_path: Path) -> None:
                     assert bytes.fromhex(row["data_hex"]) == value[: one.length]
                 elif isinstance(value, str):
                     assert row[name] == value
+                elif isinstance(value, (list, tuple)):
+                    assert [float(row[f"{name}_{index}"]) for index in range(len(value))] == list(value)
                 else:
                     assert float(row[export.UNITS.get(name, name)]) == value
     kinds = [row["kind"] for row in table(tmp_path / "out" / "MOTEHOUND_FRAME.csv")]

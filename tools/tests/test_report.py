@@ -364,7 +364,7 @@ def _scenario_without_field(folder: Path) -> Path:
         (_broken_summary, "summary.json: not JSON"),
         (_summary_without_statistics, "`position_rmse_m` needs mean, std"),
         (_missing_column, "track.csv:1: the column `raw_x_m` is missing"),
-        (_short_row, "2 fields, expected 23"),
+        (_short_row, "2 fields, expected 27"),
         (_word_for_number, "track.csv:3: `x_m` is not a number"),
         (_scenario_without_field, "scenario.json: the key `field.width_m` is missing"),
     ],

@@ -47,7 +47,7 @@ static void put(const struct output *output, const char *name, const char *text)
 
 static void assert_file(const char *name, const char *text)
 {
-    char found[100] = "";
+    char found[300] = "";
     FILE *file = fopen(at(name), "r");
     TEST_ASSERT_NOT_NULL_MESSAGE(file, name);
     found[fread(found, 1, sizeof found - 1, file)] = '\0';
@@ -267,6 +267,63 @@ static void the_summary_says_what_the_runs_say(void)
     TEST_ASSERT_EQUAL_INT(4, entries(at("out"), ""));
 }
 
+static void several_targets_have_files_of_their_own(void)
+{
+    struct results results;
+    struct scenario scenario;
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
+    motehound_track_t tracks[] = {{.time_s = 2, .target = 32, .number = 1, .x_m = 5, .members = 1, .extent_m = 3},
+                                  {.time_s = 2, .target = 16, .number = -1, .x_m = 6, .members = 2, .extent_m = 4}};
+    motehound_track_t sinks[] = {{.time_s = 2, .target = 16, .x_m = 60}, {.time_s = 2, .target = 32, .x_m = 50}};
+    motehound_watch_t watches[] = {
+        {.time_s = 2,
+         .target = 32,
+         .number = 1,
+         .head = 7,
+         .prince = 8,
+         .prince_s = 4,
+         .x_m = 5,
+         .vx_mps = 10,
+         .sd_m = 2},
+        {.time_s = 3, .target = 16, .number = -1, .head = 9, .prince = -1, .prince_s = 4, .members = 2, .extent_m = 4}};
+    motehound_truth_t truths[] = {{.time_s = 2, .target = 0, .x_m = 6}, {.time_s = 2, .target = 1, .x_m = 5}};
+    struct recorder recorder = {.tracks = tracks,
+                                .track_count = 2,
+                                .sinks = sinks,
+                                .sink_count = 2,
+                                .watches = watches,
+                                .watch_count = 2,
+                                .truths = truths,
+                                .truth_count = 2,
+                                .targets = 1};
+    for (unsigned several = 0; several < 2; several++) {
+        const int status =
+            results_open(&results, at("out"), "few", NULL, 0, false, error, sizeof error) |
+            results_add(&results, 0, &scenario, &recorder, error, sizeof error) |
+            (several ? results_add(&results, 1, &scenario, &(struct recorder){0}, error, sizeof error) : 0) |
+            results_commit(&results, "1", error, sizeof error);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, status, error);
+        TEST_ASSERT_EQUAL_INT(several ? 0 : -1, access(at("out/truth.csv"), R_OK));
+        recorder.targets = 2;
+    }
+    scenario_free(&scenario);
+    assert_file("out/truth.csv", "run,time_s,target,x_m,y_m,vx_mps,vy_mps\n0,2,0,6,0,0,0\n0,2,1,5,0,0,0\n");
+    assert_file("out/watch.csv",
+                "run,time_s,target,number,head,prince,prince_s,x_m,y_m,vx_mps,vy_mps,sd_m,extent_m,members\n"
+                "0,2,32,1,7,8,4,5,0,10,0,2,,0\n"
+                "0,3,16,,9,,,0,0,,,0,4,2\n");
+    FILE *file = fopen(at("out/track.csv"), "r");
+    TEST_ASSERT_NOT_NULL(file);
+    char line[400];
+    const char *const ends[] = {"number,mode,members,extent_m\n", "50,0,0,0,,1,0,1,\n", "60,0,0,0,,,0,2,4\n"};
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) { /* the sink's x_m is that of the same target */
+        TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, file));
+        TEST_ASSERT_TRUE(strlen(line) > strlen(ends[i]));
+        TEST_ASSERT_EQUAL_STRING(ends[i], line + strlen(line) - strlen(ends[i]));
+    }
+    fclose(file);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -278,6 +335,7 @@ int main(void)
     RUN_TEST(a_folder_that_cannot_be_written_is_refused);
     RUN_TEST(a_full_disk_is_noticed);
     RUN_TEST(the_summary_says_what_the_runs_say);
+    RUN_TEST(several_targets_have_files_of_their_own);
     port_exit(UNITY_END() > 0);
     return 0;
 }
