@@ -28,6 +28,16 @@
     X(FRAMES_SENT_LEAKS, "frames_sent_leaks", c->frames_sent[MH_MESSAGE_LEAK], "of these leaks found, on their way to the sink")                    \
     X(FRAMES_SENT_LEADS, "frames_sent_leads", c->frames_sent[MH_MESSAGE_LEAD], "of these such that say that a fixed cluster has a head")               \
     X(FRAMES_SENT_TAKENS, "frames_sent_takens", c->frames_sent[MH_MESSAGE_TAKEN], "of these acknowledgements of the fusion centre")                \
+    X(FRAMES_SENT_AWAKES, "frames_sent_awakes", c->frames_sent[MH_MESSAGE_AWAKE], "of these announcements of a target's new head")                    \
+    X(FRAMES_SENT_RESTS, "frames_sent_rests", c->frames_sent[MH_MESSAGE_REST], "of these rests of tracks that had no room in them")                   \
+    X(FRAMES_SENT_LOCATES, "frames_sent_locates", c->frames_sent[MH_MESSAGE_LOCATE], "of these calls to localise a target")                           \
+    X(FRAMES_SENT_SOUNDS, "frames_sent_sounds", c->frames_sent[MH_MESSAGE_SOUND], "of these answers to them")                                         \
+    X(FRAMES_SENT_FAILS, "frames_sent_fails", c->frames_sent[MH_MESSAGE_FAIL], "of these such that say that a target was not found")                  \
+    X(FRAMES_SENT_SUCCEEDS, "frames_sent_succeeds", c->frames_sent[MH_MESSAGE_SUCCEED], "of these of new heads to the old ones")                      \
+    X(FRAMES_SENT_COMPETES, "frames_sent_competes", c->frames_sent[MH_MESSAGE_COMPETE], "of these of nodes that contend for the lead")                \
+    X(FRAMES_SENT_DETECTIONS, "frames_sent_detections", c->frames_sent[MH_MESSAGE_DETECTION], "of these of nodes that have detected a target, of which the first leads")\
+    X(FRAMES_SENT_SUPPRESSES, "frames_sent_suppresses", c->frames_sent[MH_MESSAGE_SUPPRESS], "of these of the first of them to the others")           \
+    X(FRAMES_SENT_MERGES, "frames_sent_merges", c->frames_sent[MH_MESSAGE_MERGE], "of these about targets that go on as a group")                     \
     X(FRAMES_RECEIVED, "frames_received", c->frames_received, "receptions, one for each mote that is handed a frame")                              \
     X(FRAMES_DUPLICATE, "frames_duplicate", c->frames_duplicate, "receptions of a frame that the mote had before; its radio keeps them to itself")  \
     X(FRAMES_LOST, "frames_lost", c->frames_lost, "receptions that failed")                                                                        \

@@ -53,10 +53,20 @@ enum energy_cause account_cause(enum mh_message_kind kind)
     case MH_MESSAGE_ALERT:
     case MH_MESSAGE_TOKEN:
     case MH_MESSAGE_LEAD:
+    case MH_MESSAGE_AWAKE:
+    case MH_MESSAGE_REST:
+    case MH_MESSAGE_FAIL:
+    case MH_MESSAGE_SUCCEED:
+    case MH_MESSAGE_COMPETE:
+    case MH_MESSAGE_DETECTION:
+    case MH_MESSAGE_SUPPRESS:
+    case MH_MESSAGE_MERGE:
         return ENERGY_CLUSTERING;
     case MH_MESSAGE_REQUEST:
     case MH_MESSAGE_ASK:
     case MH_MESSAGE_ANSWER:
+    case MH_MESSAGE_LOCATE:
+    case MH_MESSAGE_SOUND:
         return ENERGY_MEASURING;
     case MH_MESSAGE_SYNC:
         return ENERGY_TIME;

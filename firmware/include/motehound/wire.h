@@ -13,8 +13,12 @@
 #include "mh_alert_t.h"
 #include "mh_answer_t.h"
 #include "mh_ask_t.h"
+#include "mh_awake_t.h"
 #include "mh_beacon_t.h"
+#include "mh_compete_t.h"
+#include "mh_detection_t.h"
 #include "mh_face_t.h"
+#include "mh_fail_t.h"
 #include "mh_form_t.h"
 #include "mh_hand_over_t.h"
 #include "mh_hello_t.h"
@@ -22,9 +26,15 @@
 #include "mh_landmark_t.h"
 #include "mh_lead_t.h"
 #include "mh_leak_t.h"
+#include "mh_locate_t.h"
+#include "mh_merge_t.h"
 #include "mh_position_t.h"
 #include "mh_report_t.h"
 #include "mh_request_t.h"
+#include "mh_rest_t.h"
+#include "mh_sound_t.h"
+#include "mh_succeed_t.h"
+#include "mh_suppress_t.h"
 #include "mh_sync_t.h"
 #include "mh_taken_t.h"
 #include "mh_token_t.h"
@@ -40,6 +50,7 @@
 #define MH_VICINITY_NODES 6   /* that a vicinity_t tells of */
 #define MH_CLUSTER_NONE 255   /* not the number of a fixed cluster */
 #define MH_LEAD_BYTES 64      /* of a track in a lead_t */
+#define MH_AWAKE_BYTES 52     /* of a track in an awake_t, and in a rest_t */
 
 enum mh_message_kind {
     MH_MESSAGE_BEACON,
@@ -60,11 +71,24 @@ enum mh_message_kind {
     MH_MESSAGE_LEAK,
     MH_MESSAGE_LEAD,
     MH_MESSAGE_TAKEN,
+    MH_MESSAGE_AWAKE,
+    MH_MESSAGE_REST,
+    MH_MESSAGE_LOCATE,
+    MH_MESSAGE_SOUND,
+    MH_MESSAGE_FAIL,
+    MH_MESSAGE_SUCCEED,
+    MH_MESSAGE_COMPETE,
+    MH_MESSAGE_DETECTION,
+    MH_MESSAGE_SUPPRESS,
+    MH_MESSAGE_MERGE,
     MH_MESSAGE_KINDS
 };
 
 /* How a search stands, in token_t and leak_t (token.h). */
 enum mh_search { MH_SEARCH_GOES_ON, MH_SEARCH_CONVERGED, MH_SEARCH_EXHAUSTED };
+
+/* Why a locate_t is sent (prince.h). */
+enum mh_locate { MH_LOCATE_PRINCE, MH_LOCATE_EXCEPTION, MH_LOCATE_REGENT, MH_LOCATE_COMPETITION };
 
 enum mh_envelope_kind { MH_ENVELOPE_NONE, MH_ENVELOPE_ROUTE, MH_ENVELOPE_FACE, MH_ENVELOPE_KINDS };
 
@@ -89,6 +113,16 @@ struct mh_message {
         mh_leak_t leak;
         mh_lead_t lead;
         mh_taken_t taken;
+        mh_awake_t awake;
+        mh_rest_t rest;
+        mh_locate_t locate;
+        mh_sound_t sound;
+        mh_fail_t fail;
+        mh_succeed_t succeed;
+        mh_compete_t compete;
+        mh_detection_t detection;
+        mh_suppress_t suppress;
+        mh_merge_t merge;
     } as;
     enum mh_envelope_kind envelope;
     mh_face_t header; /* header.route in both envelopes, the rest only in MH_ENVELOPE_FACE */
@@ -109,8 +143,9 @@ struct mh_wire_type {
 
 extern const struct mh_wire_type mh_wire_beacon, mh_wire_report, mh_wire_request, mh_wire_hello, mh_wire_landmark,
     mh_wire_sync, mh_wire_ask, mh_wire_answer, mh_wire_form, mh_wire_join, mh_wire_hand_over, mh_wire_alert,
-    mh_wire_position, mh_wire_vicinity, mh_wire_token, mh_wire_leak, mh_wire_lead, mh_wire_taken, mh_wire_route,
-    mh_wire_face;
+    mh_wire_position, mh_wire_vicinity, mh_wire_token, mh_wire_leak, mh_wire_lead, mh_wire_taken, mh_wire_awake,
+    mh_wire_rest, mh_wire_locate, mh_wire_sound, mh_wire_fail, mh_wire_succeed, mh_wire_compete, mh_wire_detection,
+    mh_wire_suppress, mh_wire_merge, mh_wire_route, mh_wire_face;
 
 /* What somebody speaks: types in any order, then NULL. */
 typedef const struct mh_wire_type *const mh_wire_types;
@@ -119,7 +154,8 @@ typedef const struct mh_wire_type *const mh_wire_types;
 extern mh_wire_types mh_wire_all[];
 
 /* message -> frame[0 .. *length). `frame` has room for MH_FRAME_MAX bytes, which are written whatever is returned. Errors: MH_ERR_ARGUMENT
- * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t, hand_over_t, vicinity_t and lead_t do not go in a face_t). */
+ * (the kind or the envelope is not among `types`), MH_ERR_CAPACITY (too long for this envelope: form_t, hand_over_t, vicinity_t, lead_t and rest_t do not go in a face_t, awake_t in no
+ * envelope). */
 enum mh_status mh_wire_encode(mh_wire_types *types, const struct mh_message *message, uint8_t *frame, size_t *length);
 
 /* frame[0 .. length) -> message; safe on any bytes. Errors: MH_ERR_CORRUPT (too short, too long, wrong check sum, or fields

@@ -120,6 +120,50 @@ static bool lead_sound(const mh_lead_t *lead)
 
 static bool taken_sound(const mh_taken_t *taken) { return taken->cluster != MH_CLUSTER_NONE; }
 
+static bool awake_sound(const mh_awake_t *awake)
+{
+    const uint8_t first = awake->length < MH_AWAKE_BYTES ? awake->length : MH_AWAKE_BYTES;
+    return awake->sender != -1 && valid(awake->x_mm, awake->y_mm) && awake->enters_cs >= 0 && awake->arms_cs >= 0 &&
+           awake->extent_cm >= 0 && awake->members >= 1 && awake->members <= MH_GROUP_MAX &&
+           awake->length <= 2 * MH_AWAKE_BYTES && data_sound(awake->data, first, MH_AWAKE_BYTES);
+}
+
+static bool rest_sound(const mh_rest_t *rest)
+{
+    return rest->sender != -1 && data_sound(rest->data, rest->length, MH_AWAKE_BYTES);
+}
+
+static bool locate_sound(const mh_locate_t *locate)
+{
+    return locate->sender != -1 && locate->kind <= MH_LOCATE_COMPETITION;
+}
+
+static bool sound_sound(const mh_sound_t *sound)
+{
+    return sound->sender != -1 && sound->asker != -1 && valid(sound->x_mm, sound->y_mm);
+}
+
+static bool fail_sound(const mh_fail_t *fail) { return fail->sender != -1 && valid(fail->x_mm, fail->y_mm); }
+
+static bool succeed_sound(const mh_succeed_t *succeed) { return succeed->sender != -1; }
+
+static bool compete_sound(const mh_compete_t *compete)
+{
+    return compete->sender != -1 && valid(compete->x_mm, compete->y_mm);
+}
+
+static bool detection_sound(const mh_detection_t *detection)
+{
+    return detection->sender != -1 && valid(detection->x_mm, detection->y_mm);
+}
+
+static bool suppress_sound(const mh_suppress_t *suppress) { return suppress->sender != -1 && suppress->released <= 1; }
+
+static bool merge_sound(const mh_merge_t *merge)
+{
+    return merge->sender != -1 && merge->target != merge->other && merge->answers <= 1;
+}
+
 static bool route_sound(const mh_route_t *route)
 {
     return route->sender != -1 && route->origin != -1 && route->hops >= 0 && route->hops <= MH_ROUTE_HOPS_MAX &&
@@ -163,13 +207,47 @@ TYPE(token, MH_MESSAGE_TOKEN, MH_ENVELOPE_NONE, as.token);
 TYPE(leak, MH_MESSAGE_LEAK, MH_ENVELOPE_NONE, as.leak);
 TYPE(lead, MH_MESSAGE_LEAD, MH_ENVELOPE_NONE, as.lead);
 TYPE(taken, MH_MESSAGE_TAKEN, MH_ENVELOPE_NONE, as.taken);
+TYPE(awake, MH_MESSAGE_AWAKE, MH_ENVELOPE_NONE, as.awake);
+TYPE(rest, MH_MESSAGE_REST, MH_ENVELOPE_NONE, as.rest);
+TYPE(locate, MH_MESSAGE_LOCATE, MH_ENVELOPE_NONE, as.locate);
+TYPE(sound, MH_MESSAGE_SOUND, MH_ENVELOPE_NONE, as.sound);
+TYPE(fail, MH_MESSAGE_FAIL, MH_ENVELOPE_NONE, as.fail);
+TYPE(succeed, MH_MESSAGE_SUCCEED, MH_ENVELOPE_NONE, as.succeed);
+TYPE(compete, MH_MESSAGE_COMPETE, MH_ENVELOPE_NONE, as.compete);
+TYPE(detection, MH_MESSAGE_DETECTION, MH_ENVELOPE_NONE, as.detection);
+TYPE(suppress, MH_MESSAGE_SUPPRESS, MH_ENVELOPE_NONE, as.suppress);
+TYPE(merge, MH_MESSAGE_MERGE, MH_ENVELOPE_NONE, as.merge);
 TYPE(route, MH_MESSAGE_KINDS, MH_ENVELOPE_ROUTE, header.route);
 TYPE(face, MH_MESSAGE_KINDS, MH_ENVELOPE_FACE, header);
 
-mh_wire_types mh_wire_all[] = {&mh_wire_beacon,   &mh_wire_report,    &mh_wire_request,
-                               &mh_wire_hello,    &mh_wire_landmark,  &mh_wire_sync,
-                               &mh_wire_ask,      &mh_wire_answer,    &mh_wire_form,
-                               &mh_wire_join,     &mh_wire_hand_over, &mh_wire_alert,
-                               &mh_wire_position, &mh_wire_vicinity,  &mh_wire_token,
-                               &mh_wire_leak,     &mh_wire_lead,      &mh_wire_taken,
-                               &mh_wire_route,    &mh_wire_face,      NULL};
+mh_wire_types mh_wire_all[] = {&mh_wire_beacon,
+                               &mh_wire_report,
+                               &mh_wire_request,
+                               &mh_wire_hello,
+                               &mh_wire_landmark,
+                               &mh_wire_sync,
+                               &mh_wire_ask,
+                               &mh_wire_answer,
+                               &mh_wire_form,
+                               &mh_wire_join,
+                               &mh_wire_hand_over,
+                               &mh_wire_alert,
+                               &mh_wire_position,
+                               &mh_wire_vicinity,
+                               &mh_wire_token,
+                               &mh_wire_leak,
+                               &mh_wire_lead,
+                               &mh_wire_taken,
+                               &mh_wire_awake,
+                               &mh_wire_rest,
+                               &mh_wire_locate,
+                               &mh_wire_sound,
+                               &mh_wire_fail,
+                               &mh_wire_succeed,
+                               &mh_wire_compete,
+                               &mh_wire_detection,
+                               &mh_wire_suppress,
+                               &mh_wire_merge,
+                               &mh_wire_route,
+                               &mh_wire_face,
+                               NULL};
