@@ -359,7 +359,7 @@ uint32_t tracker_draws(const struct tracker_choice *choice, const void *state)
 struct mh_election_config election_config_of(const struct scenario *scenario)
 {
     struct mh_election_config config;
-    mh_election_config_default(&config, scenario->protocol.election);
+    mh_election_config_default(&config, (enum mh_election)scenario->protocol.election);
     if (scenario->protocol.members > 0) {
         config.members = (uint8_t)scenario->protocol.members;
     }
@@ -394,7 +394,7 @@ static void set_up_cluster(struct protocol_choice *choice, const struct scenario
     struct mh_cluster_config *config = &choice->config.cluster;
     choice->protocol = &mh_protocol_cluster;
     choice->in_turns = true;
-    mh_cluster_config_default(config, scenario->protocol.election, MH_BROADCAST - 1, &nowhere);
+    mh_cluster_config_default(config, (enum mh_election)scenario->protocol.election, MH_BROADCAST - 1, &nowhere);
     config->election = election_config_of(scenario);
     config->wake_period = ticks(scenario->radio.wake_period_s);
     config->wake_length = ticks(scenario->radio.wake_length_s);

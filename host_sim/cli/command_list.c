@@ -38,7 +38,7 @@ static void put_keys(void)
 {
     for (size_t i = 0; i < scenario_key_count; i++) {
         const struct scenario_key *key = &scenario_keys[i];
-        char expectation[200];
+        char expectation[300];
         printf("%-30s %-20s %s%s%s\n", key->path, key->standard[0] != '\0' ? key->standard : "-",
                scenario_key_expectation(key, expectation, sizeof expectation), key->help[0] != '\0' ? "; " : "",
                key->help);

@@ -13,13 +13,25 @@ static json_t *word_at(const char *choices, unsigned index)
     return json_stringn(choices, strcspn(choices, "|"));
 }
 
-static json_t *points(const struct scenario *scenario)
+static json_t *points(const struct waypoint *points, unsigned count)
 {
     json_t *list = json_array();
-    for (unsigned i = 0; i < scenario->source.points_count; i++) {
-        const struct waypoint *point = &scenario->source.points[i];
+    for (unsigned i = 0; i < count; i++) {
+        const struct waypoint *point = &points[i];
         json_array_append_new(list, json_pack("{s:f, s:f, s:f}", "x_m", point->x_m, "y_m", point->y_m, "speed_factor",
                                               point->speed_factor));
+    }
+    return list;
+}
+
+static json_t *targets(const struct scenario *scenario)
+{
+    json_t *list = json_array();
+    for (unsigned i = 0; i < scenario->targets_count; i++) {
+        const struct scripted_target *target = &scenario->targets[i];
+        json_array_append_new(list, json_pack("{s:f, s:f, s:f, s:o}", "start_s", target->start_s, "speed_mps",
+                                              target->speed_mps, "loudness", target->loudness, "points",
+                                              points(target->points, target->points_count)));
     }
     return list;
 }
@@ -58,7 +70,9 @@ static json_t *value_of(const struct scenario *scenario, const struct scenario_k
     case KEY_TEXT:
         return json_string(*(char *const *)member);
     case KEY_POINTS:
-        return points(scenario);
+        return points(scenario->source.points, scenario->source.points_count);
+    case KEY_TARGETS:
+        return targets(scenario);
     case KEY_NUMBERS:
         return numbers((const struct number_list *)(const void *)member);
     case KEY_LIST:

@@ -6,6 +6,7 @@
 #include "world/clusters.h"
 #include "world/faults.h"
 #include "world/mobility.h"
+#include "world/targets.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,6 +22,19 @@
 static double leg_length(const struct waypoint *a, const struct waypoint *b)
 {
     return hypot(b->x_m - a->x_m, b->y_m - a->y_m);
+}
+
+/* How long there are targets; 0 where they cannot be made. */
+static double targets_duration(const struct scenario *scenario)
+{
+    struct targets targets;
+    char error[200];
+    if (targets_make(&targets, scenario, 0, error, sizeof error) != 0) {
+        return 0;
+    }
+    const double duration_s = targets.duration_s;
+    targets_free(&targets);
+    return duration_s;
 }
 
 /* How long the source is on its way. */
@@ -42,8 +56,9 @@ static double duration(const struct scenario *scenario)
     case PATH_STILL:
     case PATH_NONE:
         return scenario->source.duration_s;
+    default:
+        return targets_duration(scenario);
     }
-    return 0;
 }
 
 struct scenario_field scenario_field(const struct scenario *scenario)
@@ -53,7 +68,7 @@ struct scenario_field scenario_field(const struct scenario *scenario)
         return (struct scenario_field){scenario->field.width_m, scenario->field.height_m, scenario->network.sink_x_m,
                                        scenario->network.sink_y_m};
     }
-    const double side_m = scenario->sensor.range_m * sqrt((double)scenario->network.nodes * acos(-1) / density);
+    const double side_m = scenario->sensor.range_m * sqrt((double)scenario_nodes(scenario) * acos(-1) / density);
     return (struct scenario_field){side_m, side_m, side_m / 2, side_m / 2};
 }
 
@@ -70,6 +85,12 @@ struct scenario_prior scenario_prior(const struct scenario *scenario)
                                    .sd_y_m = sd_y_m > 0 ? sd_y_m : share * field.height_m,
                                    .rate = scenario->tracker.prior_rate_mlps,
                                    .rate_sd = scenario->tracker.prior_rate_sd_mlps};
+}
+
+size_t scenario_nodes(const struct scenario *scenario)
+{
+    const size_t side = (size_t)scenario->network.grid;
+    return scenario->network.layout == LAYOUT_STRAT ? side * side : (size_t)scenario->network.nodes;
 }
 
 size_t scenario_steps(const struct scenario *scenario)
@@ -251,18 +272,72 @@ static int check_search(const struct scenario *scenario, const char *name, char 
     return 0;
 }
 
+/* Several targets can only be heard, and where they go. */
+static int check_targets(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const enum path_kind path = scenario->source.path;
+    const bool sound = scenario->sensor.quantity == QUANTITY_SOUND;
+    if (!targets_are_several(path)) {
+        return scenario->target.count > 1 ? fail(error, error_size,
+                                                 "%s: target.count: expected 1 where source.path has one source alone, "
+                                                 "found %lld",
+                                                 name, (long long)scenario->target.count)
+                                          : 0;
+    }
+    if (!sound) {
+        return fail(error, error_size, "%s: source.path: expected one of a single source unless sensor.quantity is sound",
+                    name);
+    }
+    if (path == PATH_SCRIPTED && scenario->targets_count == 0) {
+        return fail(error, error_size, "%s: targets: expected at least one for source.path scripted, found none", name);
+    }
+    const struct scenario_field field = scenario_field(scenario);
+    if (path == PATH_RANDOM || path == PATH_SCATTERED) {
+        if (fmin(field.width_m, field.height_m) <= 2 * scenario->sensor.range_m) {
+            return fail(error, error_size,
+                        "%s: source.path: expected a field wider than 2 sensor.range_m = %g m for random and "
+                        "scattered, found %g m",
+                        name, 2 * scenario->sensor.range_m, fmin(field.width_m, field.height_m));
+        }
+        if (scenario_steps(scenario) < 1) {
+            return fail(error, error_size, "%s: source.duration_s: expected at least sensor.interval_s = %g, found %g",
+                        name, scenario->sensor.interval_s, scenario->source.duration_s);
+        }
+        return 0;
+    }
+    const unsigned points = scenario->source.points_count;
+    if (path != PATH_SCRIPTED &&
+        (points < 2 || leg_length(&scenario->source.points[0], &scenario->source.points[1]) <= 0)) {
+        return fail(error, error_size, "%s: source.points: expected 2 different ones, found %u", name, points);
+    }
+    return 0;
+}
+
 /* Clusters follow a target that is ranged, a token walks to a source of gas, and the ideal network has nothing but them. */
 static int check_clusters(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
     const bool clusters = strcmp(scenario->network.protocol, "cluster") == 0;
     const bool fixed = strcmp(scenario->network.protocol, "fixed") == 0;
     const bool walks = strcmp(scenario->network.protocol, "token") == 0;
+    const bool hears = strcmp(scenario->network.protocol, "prince") == 0;
+    const bool prince_rule = scenario->protocol.election >= (unsigned)MH_ELECTIONS;
     if (check_rings(scenario, name, error, error_size) != 0 || check_fixed(scenario, name, error, error_size) != 0) {
         return -1;
     }
-    if (scenario->network.ideal && !clusters && !fixed && !walks) {
+    if ((clusters && prince_rule) || (hears && !prince_rule)) {
+        return fail(error, error_size, "%s: protocol.election: expected %s for network.protocol %s", name,
+                    hears ? "prince, competition or timestamp" : "none of prince, competition and timestamp",
+                    scenario->network.protocol);
+    }
+    if (hears && (scenario->sensor.quantity != QUANTITY_SOUND || scenario->source.path == PATH_NONE)) {
         return fail(error, error_size,
-                    "%s: network.ideal: expected true for network.protocol cluster, fixed and token alone, found %s",
+                    "%s: network.protocol: expected prince only where sensor.quantity is sound and there is a source",
+                    name);
+    }
+    if (scenario->network.ideal && !clusters && !fixed && !walks && !hears) {
+        return fail(error, error_size,
+                    "%s: network.ideal: expected true for network.protocol cluster, prince, fixed and token alone, "
+                    "found %s",
                     name, scenario->network.protocol);
     }
     if (walks && (scenario->sensor.quantity != QUANTITY_GAS || scenario->source.path == PATH_NONE)) {
@@ -325,6 +400,9 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
         scenario_steps(scenario) < 1) {
         return fail(error, error_size, "%s: source.duration_s: expected at least sensor.interval_s = %g, found %g",
                     name, scenario->sensor.interval_s, scenario->source.duration_s);
+    }
+    if (check_targets(scenario, name, error, error_size) != 0) {
+        return -1;
     }
     const double run_s = duration(scenario);
     if (!(run_s > 0) || run_s > RUN_MAX_S) {

@@ -16,7 +16,7 @@ const struct scenario_key scenario_keys[] = {
     {"description", KEY_TEXT, AT(description), "", 0, 400, NULL, "one sentence for `motehound list`"},
     {"field.width_m", KEY_NUMBER, AT(field.width_m), "80", 1, 1e5, NULL, "the field is [0, width] x [0, height]"},
     {"field.height_m", KEY_NUMBER, AT(field.height_m), "80", 1, 1e5, NULL, ""},
-    {"source.path", KEY_CHOICE, AT(source.path), "arcs", 0, 0, "waypoints|arcs|still|gauss_markov|white_acceleration|none", "straight legs; two arcs of 90 degrees, left then right; no movement; as target.* says, another for each seed, a Gauss-Markov walk or a constant velocity disturbed by random accelerations; or no source at all"},
+    {"source.path", KEY_CHOICE, AT(source.path), "arcs", 0, 0, "waypoints|arcs|still|gauss_markov|white_acceleration|none|scripted|parallel|crossing|bounce|lanes|turn|ring|random|scattered", "straight legs; two arcs of 90 degrees, left then right; no movement; as target.* says, another for each seed, a Gauss-Markov walk or a constant velocity disturbed by random accelerations; or no source at all. Of sound, one target or several: those of targets; target.count of them along the first leg of source.points, side by side, crossing or nearly meeting in its middle, in lanes that draw near, with turns, or in a ring about it; or from one random place to the next, or at another random place at each sampling instant"},
     {"source.points", KEY_POINTS, AT(source.points), "0,0; 38,78", 1, 1000, NULL, "corners, in a file as a list of {x_m, y_m, speed_factor}; the factor belongs to the leg that ends there"},
     {"source.speed_mps", KEY_NUMBER, AT(source.speed_mps), "1", 0.01, 100, NULL, "along the path"},
     {"source.duration_s", KEY_NUMBER, AT(source.duration_s), "0", 0, 1e6, NULL, "of a still source, one that moves as target.* says, or of the run without a source; others take as long as their path"},
@@ -27,6 +27,7 @@ const struct scenario_key scenario_keys[] = {
     {"source.rate_mlps", KEY_NUMBER, AT(source.rate_mlps), "30", 0, 1e9, NULL, "gas: rate of release"},
     {"source.mixing_m2ps", KEY_NUMBER, AT(source.mixing_m2ps), "30", 1e-4, 1e6, NULL, "gas: turbulent diffusion coefficient of the air"},
     {"source.fluctuation", KEY_NUMBER, AT(source.fluctuation), "0", 0, 3, NULL, "gas: the plume fluctuates; standard deviation of what comes to a sensor at an instant, as a share of its mean (log-normal, independent)"},
+    {"source.loudness", KEY_NUMBER, AT(source.loudness), "1", 1e-3, 1e3, NULL, "sound: energy of a target at sensor.range_m, in units of the least that a sensor detects; at 1 that is how far it is heard"},
     {"wind.speed_mps", KEY_NUMBER, AT(wind.speed_mps), "1", 0, 100, NULL, "gas: of the wind ..."},
     {"wind.direction_rad", KEY_NUMBER, AT(wind.direction_rad), "0", -10, 10, NULL, "... which blows towards this direction, counter-clockwise from the x axis"},
     {"target.speed_mph", KEY_NUMBER, AT(target.speed_mph), "10", 0.01, 1000, NULL, "path gauss_markov: mean speed, miles per hour (0.44704 m/s)"},
@@ -41,21 +42,28 @@ const struct scenario_key scenario_keys[] = {
     {"target.velocity_sd_mps", KEY_NUMBER, AT(target.velocity_sd_mps), "0.2", 1e-3, 1e3, NULL, "white_acceleration: the same of its velocity"},
     {"target.acceleration_x_mps2", KEY_NUMBER, AT(target.acceleration_x_mps2), "0.01", 1e-5, 100, NULL, "white_acceleration: standard deviation of its acceleration along x, drawn anew for each sampling interval"},
     {"target.acceleration_y_mps2", KEY_NUMBER, AT(target.acceleration_y_mps2), "0.01", 1e-5, 100, NULL, "the same along y"},
+    {"target.count", KEY_COUNT, AT(target.count), "1", 1, TARGETS_MAX, NULL, "parallel and what follows it: targets"},
+    {"target.spacing_m", KEY_NUMBER, AT(target.spacing_m), "60", 0, 1e4, NULL, "parallel, turn: between neighbours; bounce, lanes: likewise, where they are nearest; ring: its radius"},
+    {"target.apart_m", KEY_NUMBER, AT(target.apart_m), "80", 0, 1e4, NULL, "lanes: between neighbours before they draw near and after"},
+    {"target.turn_deg", KEY_NUMBER, AT(target.turn_deg), "90", -180, 180, NULL, "turn: to the left by this angle; crossing, bounce: between the two ways"},
+    {"target.turns", KEY_COUNT, AT(target.turns), "1", 1, 100, NULL, "turn: so many, to the left and to the right by turns"},
+    {"targets", KEY_TARGETS, AT(targets), "", 0, TARGETS_MAX, NULL, "scripted: in a file a list of {start_s, speed_mps, loudness, points}, the first three 0, source.speed_mps and source.loudness where they are missing, points as source.points"},
     {"network.nodes", KEY_COUNT, AT(network.nodes), "1280", 4, 1e6, NULL, "sensor nodes"},
-    {"network.layout", KEY_CHOICE, AT(network.layout), "uniform", 0, 0, "uniform|r2|grid|hashed|file|rings", "random, quasi-random, cell-centred grid, random as the published experiments with ranges draw it, from network.file, or on rings as clusters.* says"},
+    {"network.layout", KEY_CHOICE, AT(network.layout), "uniform", 0, 0, "uniform|r2|grid|hashed|file|rings|strat", "random, quasi-random, cell-centred grid, random as the published experiments with ranges draw it, from network.file, on rings as clusters.* says, or one at random in each cell of a grid"},
     {"network.file", KEY_TEXT, AT(network.file), "", 0, 4000, NULL, "nodes.csv of layout file; in a file relative to it. For network.protocol fixed it has a column cluster, from 1, and may have period_s and noise_m2"},
     {"network.spacing_m", KEY_NUMBER, AT(network.spacing_m), "0", 0, 1e5, NULL, "grid: side of its cells, from the field's corner; 0 for cells that fill the field"},
     {"network.jitter", KEY_NUMBER, AT(network.jitter), "0", 0, 0.5, NULL, "grid: a node stands off the middle of its cell by up to this share of its side"},
+    {"network.grid", KEY_COUNT, AT(network.grid), "34", 2, 1000, NULL, "strat: cells along each side of the field; their square is the number of nodes, whatever network.nodes is"},
     {"network.density", KEY_NUMBER, AT(network.density), "0", 0, 1e4, NULL, "mean number of nodes within sensor.range_m of a place: gives the field's side, with the head in the middle; 0: field.* and network.sink_* do"},
     {"network.sink_x_m", KEY_NUMBER, AT(network.sink_x_m), "40", -1e5, 1e5, NULL, "where the head stands"},
     {"network.sink_y_m", KEY_NUMBER, AT(network.sink_y_m), "40", -1e5, 1e5, NULL, ""},
     {"network.starts", KEY_COUNT, AT(network.starts), "0", 0, 1000, NULL, "token: so many consecutive seeds, from a multiple of it on, share a deployment, and each begins at another node, at random but farther than network.start_m from the source; the deployment is redrawn until it is connected and has so many; 0: each seed has its own deployment, and protocol.start begins"},
     {"network.start_m", KEY_NUMBER, AT(network.start_m), "400", 0, 1e5, NULL, "... this far"},
-    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection|direct|cluster|fixed|token|chatter", "how measurements reach the head; cluster: nodes around a ranged target follow it and report it to the sink; fixed: the clusters of clusters.*, or of network.file, all follow it, and the sink joins what they say as fusion.* says; token: the search for a source of gas walks from head to head; chatter: not at all, each node broadcasts 30 bytes once in sensor.interval_s"},
-    {"network.ideal", KEY_SWITCH, AT(network.ideal), "false", 0, 0, NULL, "cluster, fixed, token: without frames, as published: nothing is lost or collides (but see fusion.report_loss), messages take no time; of cluster, energy is charged message by message"},
+    {"network.protocol", KEY_WORD, AT(network.protocol), "collection", 0, 0, "collection|direct|cluster|prince|fixed|token|chatter", "how measurements reach the head; cluster: nodes around a ranged target follow it and report it to the sink; prince: nodes around targets that they hear follow them, each head choosing the next beforehand; fixed: the clusters of clusters.*, or of network.file, all follow it, and the sink joins what they say as fusion.* says; token: the search for a source of gas walks from head to head; chatter: not at all, each node broadcasts 30 bytes once in sensor.interval_s"},
+    {"network.ideal", KEY_SWITCH, AT(network.ideal), "false", 0, 0, NULL, "cluster, prince, fixed, token: without frames, as published: nothing is lost or collides (but see fusion.report_loss), messages take no time; of cluster, energy is charged message by message"},
     {"protocol.routing", KEY_CHOICE, AT(protocol.routing), "tree", 0, 0, "tree|geographic|greedy", "collection: reports travel up the tree of the head's beacons, or by places to the head's, with face routing around voids or without"},
     {"protocol.hello_s", KEY_NUMBER, AT(protocol.hello_s), "10", 1, 600, NULL, "geographic, greedy: between a node's hellos to its neighbours"},
-    {"protocol.election", KEY_CHOICE, AT(protocol.election), "sacx", 0, 0, "sacx|sac|rho|scm|scm_near|scm_set", "cluster: who follows the target next: nodes along its predicted path (sacx, sac), along a ray in its heading (rho), or whoever detects it: the set when one joins (scm), when the nearest changes (scm_near), at any change (scm_set)"},
+    {"protocol.election", KEY_CHOICE, AT(protocol.election), "sacx", 0, 0, "sacx|sac|rho|scm|scm_near|scm_set|prince|competition|timestamp", "cluster: who follows the target next: nodes along its predicted path (sacx, sac), along a ray in its heading (rho), or whoever detects it: the set when one joins (scm), when the nearest changes (scm_near), at any change (scm_set). prince: whom the head has chosen (prince), whoever hears it best (competition) or first (timestamp)"},
     {"protocol.members", KEY_COUNT, AT(protocol.members), "0", 0, MH_CLUSTER_MAX, NULL, "cluster: nodes of a cluster beside its head; 0 for the rule's own number, 15 for sacx and 7 for sac and rho"},
     {"protocol.horizon", KEY_COUNT, AT(protocol.horizon), "4", 1, MH_ELECTION_HORIZON_MAX, NULL, "sac: predicted samples that the election looks at"},
     {"protocol.least_answers", KEY_COUNT, AT(protocol.least_answers), "4", 0, MH_CLUSTER_MAX + 1, NULL, "sac, sacx, rho: an election when fewer nodes than this measure the target or will"},
@@ -63,6 +71,11 @@ const struct scenario_key scenario_keys[] = {
     {"protocol.start", KEY_COUNT, AT(protocol.start), "0", 0, 1e9, NULL, "token: the node at which the search begins, where network.starts is 0"},
     {"protocol.heads_max", KEY_COUNT, AT(protocol.heads_max), "60", 1, 250, NULL, "token: the search ends after so many heads, ..."},
     {"protocol.calm", KEY_COUNT, AT(protocol.calm), "3", 1, 100, NULL, "... or when the estimates of so many in succession are calm (tracker.calm_*)"},
+    {"protocol.guards", KEY_CHOICE, AT(protocol.guards), "on", 0, 0, "off|on", "prince: regents, watchdogs, repetitions, relays and the test for mirror images; off: the published rules alone"},
+    {"protocol.entries", KEY_SWITCH, AT(protocol.entries), "true", 0, 0, NULL, "prince: the nodes around where targets begin expect them there in the first 30 s"},
+    {"protocol.replies", KEY_COUNT, AT(protocol.replies), "2", 2, 16, NULL, "prince: a query has enough with so many"},
+    {"protocol.lead_m", KEY_NUMBER, AT(protocol.lead_m), "60", 1, 1e4, NULL, "prince: the one is chosen that the target reaches after about this way, ..."},
+    {"protocol.farthest", KEY_SWITCH, AT(protocol.farthest), "false", 0, 0, NULL, "... or after the longest"},
     {"clusters.nodes", KEY_NUMBERS, AT(clusters.nodes), "3, 4, 5, 6", 1, 32, NULL, "rings: of each cluster; clusters stand in the cells of a square grid over the field, row by row"},
     {"clusters.ring_m", KEY_NUMBER, AT(clusters.ring_m), "15", 0.1, 1e4, NULL, "rings: radius; the r-th ring is turned by r pi / 7"},
     {"clusters.range_variance_m2", KEY_NUMBERS, AT(clusters.range_variance_m2), "0.02, 0.015, 0.01, 0.03", 1e-6, 1e4, NULL, "rings: of the ranges of each cluster, in place of sensor.range_noise_m"},
@@ -75,7 +88,7 @@ const struct scenario_key scenario_keys[] = {
     {"fusion.wait_s", KEY_NUMBER, AT(fusion.wait_s), "0.5", 0.01, 3600, NULL, "fixed: the sink waits for what clusters tell this long, at most fusion.report_s"},
     {"fusion.keep_s", KEY_NUMBER, AT(fusion.keep_s), "10", 0, 3600, NULL, "fixed: what a cluster told last stands, predicted, for what is lost, until it is this old (all rules but hif*, which lose nothing)"},
     {"traffic.sources", KEY_COUNT, AT(traffic.sources), "0", 0, 1e6, NULL, "path none: nodes that report once in sensor.interval_s, each at its own time"},
-    {"sensor.quantity", KEY_CHOICE, AT(sensor.quantity), "concentration", 0, 0, "concentration|range|gas", "what is measured: the source's diffusing substance, how far the target is, or a gas that the wind brings from it"},
+    {"sensor.quantity", KEY_CHOICE, AT(sensor.quantity), "concentration", 0, 0, "concentration|range|gas|sound", "what is measured: the source's diffusing substance, how far the target is, a gas that the wind brings from it, or the energy of its sound"},
     {"sensor.interval_s", KEY_NUMBER, AT(sensor.interval_s), "1", 0.01, 3600, NULL, "between samples; in a replay the recording's own unless set"},
     {"sensor.relative_noise", KEY_NUMBER, AT(sensor.relative_noise), "0", 0, 1, NULL, "standard deviation as a share of the reading"},
     {"sensor.additive_noise", KEY_NUMBER, AT(sensor.additive_noise), "0", 0, 1000, NULL, "standard deviation, g/m2"},
@@ -84,10 +97,12 @@ const struct scenario_key scenario_keys[] = {
     {"sensor.loss", KEY_NUMBER, AT(sensor.loss), "0", 0, 1, NULL, "probability that a reading never comes"},
     {"sensor.outage_start_s", KEY_NUMBER, AT(sensor.outage_start_s), "0", 0, 1e6, NULL, "from then on no reading of any node comes ..."},
     {"sensor.outage_s", KEY_NUMBER, AT(sensor.outage_s), "0", 0, 1e6, NULL, "... for this long"},
-    {"sensor.range_m", KEY_NUMBER, AT(sensor.range_m), "50", 0.1, 1000, NULL, "range: the target is detected within"},
+    {"sensor.range_m", KEY_NUMBER, AT(sensor.range_m), "50", 0.1, 1000, NULL, "range, sound: the target is detected within; a sound of loudness 1 is at its threshold there"},
     {"sensor.range_noise_m", KEY_NUMBER, AT(sensor.range_noise_m), "5", 0, 100, NULL, "range: standard deviation of a range"},
     {"sensor.noise_correlation", KEY_NUMBER, AT(sensor.noise_correlation), "0", 0, 1, NULL, "range: correlation of the noise of any two ranges of the same instant, unknown to the tracker"},
     {"sensor.noisy_detection", KEY_SWITCH, AT(sensor.noisy_detection), "false", 0, 0, NULL, "range: the noisy range decides whether the target is detected, not the true one"},
+    {"sensor.source_noise", KEY_NUMBER, AT(sensor.source_noise), "0.19", 0, 2, NULL, "sound: standard deviation of the logarithm of what comes to a sensor"},
+    {"sensor.background_noise", KEY_NUMBER, AT(sensor.background_noise), "0.05", 0, 100, NULL, "sound: standard deviation of what is left of the background when its mean is subtracted, in units of the threshold"},
     {"sensor.noise_ppm", KEY_NUMBER, AT(sensor.noise_ppm), "0.0001", 0, 1e6, NULL, "gas: standard deviation of a sample"},
     {"sensor.unit_ppm", KEY_NUMBER, AT(sensor.unit_ppm), "0.001", 1e-9, 1e6, NULL, "gas: concentration that is 1 in what the sensor gives, -2048 to 2048 in steps of a millionth"},
     {"radio.range_m", KEY_NUMBER, AT(radio.range_m), "15", 0.1, 1e5, NULL, "disc: frames reach every mote within"},
@@ -148,7 +163,7 @@ const struct scenario_key scenario_keys[] = {
     {"clock.wander_ppm", KEY_NUMBER, AT(clock.wander_ppm), "0", 0, 50, NULL, "their rates swing by this, with a period of half an hour and a phase of their own"},
     {"clock.sync", KEY_CHOICE, AT(clock.sync), "none", 0, 0, "none|flooding", "how motes get to know the true time; none: they take their own clock's"},
     {"clock.sync_period_s", KEY_NUMBER, AT(clock.sync_period_s), "15", 2, 3600, NULL, "flooding: between rounds, each of two messages a mote"},
-    {"tracker.name", KEY_WORD, AT(tracker.name), "diffusion", 0, 0, "diffusion|luo|range|pftl|msl|centroid|cv_ukf|cv_ekf|gas|gas_small|gas_ekf|gas_ukf", "which tracker the head runs"},
+    {"tracker.name", KEY_WORD, AT(tracker.name), "diffusion", 0, 0, "diffusion|luo|range|pftl|msl|centroid|cv_ukf|cv_ekf|gas|gas_small|gas_ekf|gas_ukf|acoustic|dm|ml", "which tracker the head runs"},
     {"tracker.diffusion_m2ps", KEY_NUMBER, AT(tracker.diffusion_m2ps), "1", 1e-4, 1e3, NULL, "diffusion, luo: assumed diffusion coefficient"},
     {"tracker.chi", KEY_NUMBER, AT(tracker.chi), "0.2", 0, 1000, NULL, "diffusion, luo: significant increment of concentration, g/m2"},
     {"tracker.release_gps", KEY_NUMBER, AT(tracker.release_gps), "100", 1e-3, 1e5, NULL, "diffusion: expected release rate"},
@@ -189,6 +204,11 @@ const struct scenario_key scenario_keys[] = {
     {"tracker.noise_ppm", KEY_NUMBER, AT(tracker.noise_ppm), "0", 0, 1e6, NULL, "gas: assumed noise of a sample; 0 for sensor.noise_ppm"},
     {"tracker.calm_step_m", KEY_NUMBER, AT(tracker.calm_step_m), "5", 0.001, 1e5, NULL, "gas: an estimate is calm that has moved less than this, ..."},
     {"tracker.calm_sd_m", KEY_NUMBER, AT(tracker.calm_sd_m), "10", 0.001, 1e5, NULL, "... gas, gas_small: and has a smaller standard deviation than this, of x and y together"},
+    {"tracker.intervals", KEY_COUNT, AT(tracker.intervals), "0", 0, 255, NULL, "dm: of the table of distances; 0 for the distance itself"},
+    {"tracker.table", KEY_CHOICE, AT(tracker.table), "middle", 0, 0, "outer|middle|centroid|linear", "dm: a distance is the middle of its interval, but in the first its outer end, its middle or two thirds of it; or linear between its ends"},
+    {"tracker.variant", KEY_CHOICE, AT(tracker.variant), "uniform", 0, 0, "cases|uniform|joint", "dm: of three circles a point by cases, as published, by one rule for all, or by the least triangle"},
+    {"tracker.separation", KEY_CHOICE, AT(tracker.separation), "joint", 0, 0, "joint|decomposition|none", "acoustic, dm, ml: targets heard together are located together, from each one's share by predicted distances, or as if each were alone"},
+    {"tracker.groups", KEY_CHOICE, AT(tracker.groups), "none", 0, 0, "none|members|weights", "acoustic: targets that come near each other go on as a group: not, by all its members, or by the centroid of energies"},
     {"energy.profile", KEY_WORD, AT(energy.profile), "mica2", 0, 0, "mica2|micaz|none", "whose currents are charged; none: energy is not accounted for"},
     {"energy.battery_j", KEY_NUMBER, AT(energy.battery_j), "0", 0, 1e6, NULL, "of each mote, which dies when it is used up; 0: all are on mains"},
     {"energy.sink_mains", KEY_SWITCH, AT(energy.sink_mains), "true", 0, 0, NULL, "the sink has no battery, and its energy is left out of the totals"},
@@ -238,6 +258,10 @@ const char *scenario_key_expectation(const struct scenario_key *key, char *text,
         break;
     case KEY_POINTS:
         snprintf(text, size, "%.0f to %.0f points `x,y[,speed factor]; ...`", key->minimum, key->maximum);
+        break;
+    case KEY_TARGETS:
+        snprintf(text, size, "at most %.0f targets `start_s,speed_mps,loudness: x,y[,speed factor]; ... | ...`",
+                 key->maximum);
         break;
     case KEY_NUMBERS:
         snprintf(text, size, "1 to %d numbers %g to %g `a, b, ...`", SCENARIO_NUMBERS_MAX, key->minimum, key->maximum);
@@ -336,16 +360,16 @@ static int split(const char *text, char separator, char ***pieces)
     return (int)count;
 }
 
-/* "x,y[,factor]; ..." Returns false on anything else. */
-static bool set_points(struct scenario *scenario, const struct scenario_key *key, const char *value)
+/* "x,y[,factor]; ..." -> points, which the caller frees. Returns how many; -1 on anything else. */
+static int read_points(const char *text, double most, struct waypoint **points)
 {
     char **pieces;
-    const int count = split(value, ';', &pieces);
+    const int count = split(text, ';', &pieces);
     if (count < 0) {
-        return false;
+        return -1;
     }
-    struct waypoint *points = calloc((size_t)count, sizeof *points);
-    bool sound = points != NULL && count <= key->maximum;
+    *points = calloc((size_t)count, sizeof **points);
+    bool sound = *points != NULL && count <= most;
     for (int i = 0; i < count && sound; i++) {
         char **numbers;
         const int numbers_count = split(pieces[i], ',', &numbers);
@@ -355,19 +379,85 @@ static bool set_points(struct scenario *scenario, const struct scenario_key *key
             sound = text_number(numbers[j], strlen(numbers[j]), &number[j]) && fabs(number[j]) <= 1e6;
         }
         sound = sound && number[2] >= 1e-3 && number[2] <= 1e3;
-        points[i] = (struct waypoint){number[0], number[1], number[2]};
+        (*points)[i] = (struct waypoint){number[0], number[1], number[2]};
         if (numbers_count > 0) {
             free_list(numbers, (unsigned)numbers_count);
         }
     }
     free_list(pieces, (unsigned)count);
     if (!sound) {
-        free(points);
+        free(*points);
+    }
+    return sound ? count : -1;
+}
+
+static bool set_points(struct scenario *scenario, const struct scenario_key *key, const char *value)
+{
+    struct waypoint *points;
+    const int count = read_points(value, key->maximum, &points);
+    if (count < 0) {
         return false;
     }
     free(scenario->source.points);
     scenario->source.points = points;
     scenario->source.points_count = (unsigned)count;
+    return true;
+}
+
+static void free_targets(struct scripted_target *targets, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        free(targets[i].points);
+    }
+    free(targets);
+}
+
+/* "start_s,speed_mps,loudness: points". The points are the caller's to free. */
+static bool read_target(const char *text, struct scripted_target *target)
+{
+    enum { POINTS_MAX = 1000 };
+    const char *colon = strchr(text, ':');
+    char *head = colon != NULL ? strndup(text, (size_t)(colon - text)) : NULL;
+    char **numbers;
+    const int numbers_count = head != NULL ? split(head, ',', &numbers) : -1;
+    double number[3] = {0};
+    bool sound = numbers_count == 3;
+    for (int i = 0; i < numbers_count && sound; i++) {
+        sound = text_number(numbers[i], strlen(numbers[i]), &number[i]);
+    }
+    if (numbers_count > 0) {
+        free_list(numbers, (unsigned)numbers_count);
+    }
+    free(head);
+    sound = sound && number[0] >= 0 && number[0] <= 1e6 && number[1] >= 0.01 && number[1] <= 100 && number[2] >= 1e-3 &&
+            number[2] <= 1e3;
+    *target = (struct scripted_target){.start_s = number[0], .speed_mps = number[1], .loudness = number[2]};
+    const int count = sound ? read_points(colon + 1, POINTS_MAX, &target->points) : -1;
+    target->points_count = count < 0 ? 0 : (unsigned)count;
+    return count >= 0;
+}
+
+static bool set_targets(struct scenario *scenario, const struct scenario_key *key, const char *value)
+{
+    char **pieces = NULL;
+    const int count = *value == '\0' ? 0 : split(value, '|', &pieces);
+    struct scripted_target *targets = count > 0 ? calloc((size_t)count, sizeof *targets) : NULL;
+    bool sound = count >= 0 && count <= key->maximum && (count == 0 || targets != NULL);
+    unsigned made = 0;
+    for (int i = 0; i < count && sound; i++) {
+        sound = read_target(pieces[i], &targets[i]);
+        made += sound;
+    }
+    if (count > 0) {
+        free_list(pieces, (unsigned)count);
+    }
+    if (!sound) {
+        free_targets(targets, made);
+        return false;
+    }
+    free_targets(scenario->targets, scenario->targets_count);
+    scenario->targets = targets;
+    scenario->targets_count = made;
     return true;
 }
 
@@ -463,6 +553,8 @@ static bool set(struct scenario *scenario, const struct scenario_key *key, const
         return (double)strlen(value) <= key->maximum && is_utf8(value) && set_text(member, value);
     case KEY_POINTS:
         return set_points(scenario, key, value);
+    case KEY_TARGETS:
+        return set_targets(scenario, key, value);
     case KEY_NUMBERS:
         return set_numbers(member, key, value);
     case KEY_LIST:
@@ -478,7 +570,7 @@ int scenario_set(struct scenario *scenario, const char *path, const char *value,
         return scenario_key_unknown("", path, error, error_size);
     }
     if (!set(scenario, key, value)) {
-        char expectation[200];
+        char expectation[300];
         return fail(error, error_size, "%s: expected %s, found '%.60s'", path,
                     scenario_key_expectation(key, expectation, sizeof expectation), value);
     }
@@ -505,6 +597,7 @@ void scenario_free(struct scenario *scenario)
         }
     }
     free(scenario->source.points);
+    free_targets(scenario->targets, scenario->targets_count);
     free_list(scenario->sweep.values, scenario->sweep.values_count);
     memset(scenario, 0, sizeof *scenario);
 }

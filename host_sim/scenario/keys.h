@@ -13,6 +13,7 @@ enum key_type {
     KEY_WORD,    /* char *: one of `choices` */
     KEY_TEXT,    /* char *: at most `maximum` bytes of UTF-8 */
     KEY_POINTS,  /* source.points */
+    KEY_TARGETS, /* targets */
     KEY_NUMBERS, /* struct number_list: each number within the range */
     KEY_LIST     /* sweep.values */
 };

@@ -6,8 +6,11 @@
 #ifndef MOTEHOUND_SIM_SCENARIO_H
 #define MOTEHOUND_SIM_SCENARIO_H
 
+#include "motehound/circles.h"
+#include "motehound/distance_table.h"
 #include "motehound/election.h"
 #include "motehound/fusion.h"
+#include "motehound/group.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,12 +22,30 @@ enum path_kind {
     PATH_STILL,     /* stays at the first point for duration_s */
     PATH_GAUSS_MARKOV, /* struct target's random walk for duration_s, its own for every seed */
     PATH_WHITE_ACCELERATION, /* at constant velocity but for struct target's accelerations, for duration_s, its own for every seed */
-    PATH_NONE                /* there is no source: for duration_s the nodes report synthetic traffic */
+    PATH_NONE,     /* there is no source: for duration_s the nodes report synthetic traffic */
+    PATH_SCRIPTED, /* the targets of `targets`, each on its own way */
+    PATH_PARALLEL, /* target.count targets side by side; this and all below: world/targets.h */
+    PATH_CROSSING,
+    PATH_BOUNCE,
+    PATH_LANES,
+    PATH_TURN,
+    PATH_RING,
+    PATH_RANDOM,
+    PATH_SCATTERED
 };
 
 struct waypoint {
     double x_m, y_m;
     double speed_factor; /* of the leg that ends here, times source.speed_mps; ignored for the first point */
+};
+
+/* One target of PATH_SCRIPTED. */
+struct scripted_target {
+    double start_s; /* it is there from then on, until the end of its way */
+    double speed_mps;
+    double loudness; /* as source.loudness */
+    struct waypoint *points;
+    unsigned points_count;
 };
 
 enum propagation_kind { PROPAGATION_DISC, PROPAGATION_LOG_DISTANCE };
@@ -34,13 +55,18 @@ enum sync_kind { SYNC_NONE, SYNC_FLOODING };
 enum routing_kind { ROUTING_TREE, ROUTING_GEOGRAPHIC, ROUTING_GREEDY };
 
 /* What sensors measure and trackers work on. */
-enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE, QUANTITY_GAS };
+enum quantity { QUANTITY_CONCENTRATION, QUANTITY_RANGE, QUANTITY_GAS, QUANTITY_SOUND };
+
+/* Who follows the target next: firmware/election.h's rules of the protocol `cluster`, and those of `prince`. */
+enum election_rule { ELECTION_PRINCE = MH_ELECTIONS, ELECTION_COMPETITION, ELECTION_TIMESTAMP };
 
 enum resampling_kind { RESAMPLING_PRC, RESAMPLING_SYSTEMATIC };
 
-enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE, LAYOUT_RINGS };
+enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE, LAYOUT_RINGS, LAYOUT_STRAT };
 
-enum { SCENARIO_NUMBERS_MAX = 16 };
+enum separation_kind { SEPARATION_JOINT, SEPARATION_DECOMPOSITION, SEPARATION_NONE };
+
+enum { SCENARIO_NUMBERS_MAX = 16, TARGETS_MAX = 16 };
 
 struct number_list {
     double values[SCENARIO_NUMBERS_MAX];
@@ -66,6 +92,7 @@ struct scenario {
         double rate_mlps;      /* of QUANTITY_GAS: q ... */
         double mixing_m2ps;    /* ... and K, the air's turbulent diffusion */
         double fluctuation;    /* sd of what comes to a sensor, as a share of its mean */
+        double loudness;       /* of QUANTITY_SOUND: energy of a target at sensor.range_m, in units of the threshold */
     } source;
     struct {
         double speed_mps, direction_rad; /* it blows towards, counter-clockwise from the x axis */
@@ -78,7 +105,13 @@ struct scenario {
         double x_m, y_m, vx_mps, vy_mps;       /* mean start of PATH_WHITE_ACCELERATION ... */
         double position_sd_m, velocity_sd_mps; /* ... and sd of each coordinate */
         double acceleration_x_mps2, acceleration_y_mps2; /* sd of its accelerations */
+        int64_t count;                                   /* of PATH_PARALLEL and what follows it */
+        double spacing_m, apart_m; /* between neighbours; before and after, where they do not keep it */
+        double turn_deg;
+        int64_t turns;
     } target;
+    struct scripted_target *targets; /* of PATH_SCRIPTED */
+    unsigned targets_count;
     struct {
         int64_t nodes;
         enum layout_kind layout;
@@ -88,15 +121,16 @@ struct scenario {
         double
             density; /* mean number of nodes within sensor.range_m of a place, which then gives the field; 0: field.* does */
         double sink_x_m, sink_y_m;
+        int64_t grid;   /* of LAYOUT_STRAT: cells along a side, which gives the number of nodes */
         int64_t starts; /* consecutive seeds that share a deployment, each with its own start of the search; 0: none */
         double start_m; /* these starts are farther than this from the source */
-        char *protocol; /* collection, direct, cluster, fixed, token or chatter */
+        char *protocol; /* collection, direct, cluster, prince, fixed, token or chatter */
         bool ideal;     /* clusters without frames: nothing is lost, collides or takes time */
     } network;
     struct {
         enum routing_kind routing;
         double hello_s; /* between a node's hellos to its neighbours */
-        enum mh_election election;
+        unsigned election;     /* enum mh_election or election_rule */
         int64_t members;       /* of a cluster beside its head; 0: the election rule's own number */
         int64_t horizon;       /* predicted samples that an election looks at */
         int64_t least_answers; /* fewer than so many nodes that measure the target bring about an election */
@@ -104,6 +138,11 @@ struct scenario {
         int64_t heads_max;     /* token: the search ends after so many heads ... */
         int64_t calm;          /* ... or when so many in succession find nothing new */
         double watch_s;        /* a node that has heard of no track for a while looks for a target itself this often */
+        unsigned guards;       /* prince: 1 with the guards against turns and losses, 0 without */
+        bool entries;          /* prince: nodes around where targets begin expect them */
+        int64_t replies;       /* prince: a query is content with so many */
+        double lead_m;         /* prince: the next fix is due after about this way */
+        bool farthest;         /* prince: ... or as late as can be */
     } protocol;
     struct {
         struct number_list nodes;             /* of each cluster of LAYOUT_RINGS */
@@ -136,6 +175,8 @@ struct scenario {
         double range_noise_m;            /* sd of a range */
         double noise_correlation;        /* of the noise of two ranges of an instant */
         bool noisy_detection;            /* by the noisy range, not the true one */
+        double source_noise;             /* of QUANTITY_SOUND: tau ... */
+        double background_noise;         /* ... and eta */
         double noise_ppm;                /* of QUANTITY_GAS: sd */
         double unit_ppm;                 /* concentration that is 1 in what the sensor gives */
     } sensor;
@@ -221,6 +262,11 @@ struct scenario {
         double wind_scale, wind_off_rad; /* gas: the wind as the tracker has it, from what it is */
         double noise_ppm;                /* gas: assumed noise; 0: the sensor's */
         double calm_step_m, calm_sd_m;   /* gas: an estimate that is calm */
+        int64_t intervals;               /* dm: of the table of distances; 0: the distance itself */
+        enum mh_distance_mode table;     /* dm */
+        enum mh_circles_variant variant; /* dm: of three circles */
+        enum separation_kind separation; /* acoustic, dm, ml: of several targets' sounds */
+        enum mh_group_mode groups;       /* acoustic, dm: targets that are near each other */
     } tracker;
     struct {
         char *profile;    /* which mote's currents; `none`: energy is not accounted for */
@@ -255,7 +301,8 @@ int scenario_parse(const char *yaml, size_t length, const char *name, struct sce
 /* scenario_parse of the file at `path`. A relative network.file is taken from the scenario file's own folder. */
 int scenario_load(const char *path, struct scenario *scenario, char *error, size_t error_size);
 
-/* Set one key from text, as --set does: numbers, words, `source.points` as `x,y[,factor]; ...`, `sweep.values` as `a,
+/* Set one key from text, as --set does: numbers, words, `source.points` as `x,y[,factor]; ...`,
+ * `targets` as `start_s,speed_mps,loudness: points | ...`, `sweep.values` as `a,
  * b, ...`. An unknown key's error names the nearest known one. Returns 0, or -1 with one line in `error` and the
  * scenario as it was. */
 int scenario_set(struct scenario *scenario, const char *path, const char *value, char *error, size_t error_size);
@@ -281,6 +328,9 @@ struct scenario_prior {
 };
 
 struct scenario_prior scenario_prior(const struct scenario *scenario);
+
+/* Sensor nodes: network.nodes, or those of network.grid. */
+size_t scenario_nodes(const struct scenario *scenario);
 
 /* Whole sampling intervals in source.duration_s. */
 size_t scenario_steps(const struct scenario *scenario);

@@ -16,11 +16,19 @@ struct raw_point {
     char *x, *y, *speed_factor;
 };
 
+struct raw_target {
+    char *start_s, *speed_mps, *loudness;
+    struct raw_point *points;
+    unsigned points_count;
+};
+
 /* The document as texts, NULL where a key is absent. */
 struct raw {
     char *values[KEYS_MAX];
     struct raw_point *points;
     unsigned points_count;
+    struct raw_target *targets;
+    unsigned targets_count;
     char **lists[KEYS_MAX];
     unsigned list_counts[KEYS_MAX];
 };
@@ -34,6 +42,19 @@ static const cyaml_schema_field_t point_fields[] = {
 };
 static const cyaml_schema_value_t point_schema = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct raw_point, point_fields),
+};
+static const cyaml_schema_field_t target_fields[] = {
+    CYAML_FIELD_STRING_PTR("start_s", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw_target, start_s, 0,
+                           CYAML_UNLIMITED),
+    CYAML_FIELD_STRING_PTR("speed_mps", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw_target, speed_mps, 0,
+                           CYAML_UNLIMITED),
+    CYAML_FIELD_STRING_PTR("loudness", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw_target, loudness, 0,
+                           CYAML_UNLIMITED),
+    CYAML_FIELD_SEQUENCE("points", CYAML_FLAG_POINTER, struct raw_target, points, &point_schema, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t target_schema = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, struct raw_target, target_fields),
 };
 static const cyaml_schema_value_t text_schema = {
     CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 0, CYAML_UNLIMITED),
@@ -52,12 +73,16 @@ static cyaml_schema_field_t field_of(size_t index, const char *name)
 {
     const cyaml_schema_field_t points = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
                                                              points, &point_schema, 1, CYAML_UNLIMITED);
+    const cyaml_schema_field_t targets = CYAML_FIELD_SEQUENCE("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
+                                                              targets, &target_schema, 1, CYAML_UNLIMITED);
     cyaml_schema_field_t list = CYAML_FIELD_SEQUENCE_COUNT("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw,
                                                            lists[0], list_counts[0], &text_schema, 1, CYAML_UNLIMITED);
     cyaml_schema_field_t field =
         CYAML_FIELD_STRING_PTR("", CYAML_FLAG_POINTER | CYAML_FLAG_OPTIONAL, struct raw, values[0], 0, CYAML_UNLIMITED);
     if (scenario_keys[index].type == KEY_POINTS) {
         field = points;
+    } else if (scenario_keys[index].type == KEY_TARGETS) {
+        field = targets;
     } else if (is_list(&scenario_keys[index])) {
         list.data_offset = (uint32_t)(offsetof(struct raw, lists) + index * sizeof(char **));
         list.count_offset = (uint32_t)(offsetof(struct raw, list_counts) + index * sizeof(unsigned));
@@ -234,35 +259,112 @@ static int explain(const char *yaml, size_t length, const char *name, cyaml_err_
                 status == CYAML_OK ? "expected one document, found more" : cyaml_strerror(status));
 }
 
-/* The points as --set writes them. Returns NULL with one line in `error`. */
-static char *points_text(const char *yaml, size_t length, const char *name, const struct raw *raw, char *error,
-                         size_t error_size)
+/* What is being turned into text, for errors. */
+struct document {
+    const char *yaml;
+    size_t length;
+    const char *name;
+    char *error;
+    size_t error_size;
+};
+
+enum { NUMBER_MAX = 60, POINT_MAX = 3 * NUMBER_MAX + 4 };
+
+/* `value`, or what stands for it where there is none; NULL, with one line, where it is no number. */
+static const char *number_text(const struct document *document, const char *path, const char *value,
+                               const char *standard)
 {
-    enum { NUMBER_MAX = 60 };
-    char *text = malloc((size_t)raw->points_count * (3 * NUMBER_MAX + 4) + 1);
-    if (text == NULL) {
-        fail(error, error_size, "%s: no memory", name);
-        return NULL;
+    const char *text = value != NULL ? value : standard;
+    double number;
+    if (strlen(text) <= NUMBER_MAX && text_number(text, strlen(text), &number)) {
+        return text;
     }
-    char *end = text;
-    for (unsigned i = 0; i < raw->points_count; i++) {
-        const struct raw_point *point = &raw->points[i];
+    char problem[8];
+    fail(document->error, document->error_size, "%s:%zu: %s: expected a number, found '%.60s'", document->name,
+         line_of(document->yaml, document->length, path, problem, sizeof problem), path, text);
+    return NULL;
+}
+
+/* The points of the list at `path` as --set writes them -> text, with POINT_MAX bytes for each. False with one line. */
+static bool write_points(const struct document *document, const char *path, const struct raw_point *points,
+                         unsigned count, char *text)
+{
+    for (unsigned i = 0; i < count; i++) {
         const char *members[] = {"x_m", "y_m", "speed_factor"};
-        const char *values[] = {point->x, point->y, point->speed_factor != NULL ? point->speed_factor : "1"};
+        const char *values[] = {points[i].x, points[i].y, points[i].speed_factor};
         for (size_t j = 0; j < 3; j++) {
-            double number;
-            if (strlen(values[j]) > NUMBER_MAX || !text_number(values[j], strlen(values[j]), &number)) {
-                char path[80], problem[8];
-                snprintf(path, sizeof path, "source.points[%u].%s", i, members[j]);
-                fail(error, error_size, "%s:%zu: %s: expected a number, found '%.60s'", name,
-                     line_of(yaml, length, path, problem, sizeof problem), path, values[j]);
-                free(text);
-                return NULL;
+            char member[120];
+            snprintf(member, sizeof member, "%s[%u].%s", path, i, members[j]);
+            const char *number = number_text(document, member, values[j], "1");
+            if (number == NULL) {
+                return false;
             }
-            end += sprintf(end, "%s%s", values[j], j < 2 ? "," : (i + 1 < raw->points_count ? ";" : ""));
+            text += sprintf(text, "%s%s", number, j < 2 ? "," : (i + 1 < count ? ";" : ""));
         }
     }
-    *end = '\0';
+    *text = '\0';
+    return true;
+}
+
+static char *no_memory(const struct document *document)
+{
+    fail(document->error, document->error_size, "%s: no memory", document->name);
+    return NULL;
+}
+
+/* The points as --set writes them. Returns NULL with one line. */
+static char *points_text(const struct document *document, const struct raw *raw)
+{
+    char *text = malloc((size_t)raw->points_count * POINT_MAX + 1);
+    if (text == NULL) {
+        return no_memory(document);
+    }
+    if (!write_points(document, "source.points", raw->points, raw->points_count, text)) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+/* One target likewise -> text. */
+static bool write_target(const struct document *document, unsigned index, const struct raw_target *target,
+                         const struct scenario *scenario, char *text)
+{
+    char path[3][40], standard[2][NUMBER_MAX];
+    static const char *const members[] = {"start_s", "speed_mps", "loudness"};
+    for (int j = 0; j < 3; j++) {
+        snprintf(path[j], sizeof path[j], "targets[%u].%s", index, members[j]);
+    }
+    snprintf(standard[0], sizeof standard[0], "%.17g", scenario->source.speed_mps);
+    snprintf(standard[1], sizeof standard[1], "%.17g", scenario->source.loudness);
+    const char *start = number_text(document, path[0], target->start_s, "0");
+    const char *speed = start != NULL ? number_text(document, path[1], target->speed_mps, standard[0]) : NULL;
+    const char *loudness = speed != NULL ? number_text(document, path[2], target->loudness, standard[1]) : NULL;
+    if (loudness == NULL) {
+        return false;
+    }
+    snprintf(path[0], sizeof path[0], "targets[%u].points", index);
+    text += sprintf(text, "%s%s,%s,%s:", index > 0 ? "|" : "", start, speed, loudness);
+    return write_points(document, path[0], target->points, target->points_count, text);
+}
+
+/* The targets as --set writes them. Returns NULL with one line. */
+static char *targets_text(const struct document *document, const struct raw *raw, const struct scenario *scenario)
+{
+    size_t size = 1;
+    for (unsigned i = 0; i < raw->targets_count; i++) {
+        size += ((size_t)raw->targets[i].points_count + 1) * POINT_MAX + 1;
+    }
+    char *text = calloc(size, 1);
+    if (text == NULL) {
+        return no_memory(document);
+    }
+    for (unsigned i = 0; i < raw->targets_count; i++) {
+        if (!write_target(document, i, &raw->targets[i], scenario, text + strlen(text))) {
+            free(text);
+            return NULL;
+        }
+    }
     return text;
 }
 
@@ -284,26 +386,40 @@ static char *list_text(const char *name, char **list, unsigned count, char *erro
     return text;
 }
 
+/* The value of key `index` as --set would give it: NULL where it is absent, else in *value. What is made for it is *made, the caller's to free. False
+ * with one line. */
+static bool value_text(const struct document *document, const struct raw *raw, size_t index,
+                       const struct scenario *scenario, const char **value, char **made)
+{
+    const enum key_type type = scenario_keys[index].type;
+    *value = raw->values[index];
+    *made = NULL;
+    const bool listed = type == KEY_POINTS    ? raw->points != NULL
+                        : type == KEY_TARGETS ? raw->targets != NULL
+                                              : raw->lists[index] != NULL;
+    if (!listed) {
+        return true;
+    }
+    *value = *made = type == KEY_POINTS    ? points_text(document, raw)
+                     : type == KEY_TARGETS ? targets_text(document, raw, scenario)
+                                           : list_text(document->name, raw->lists[index], raw->list_counts[index],
+                                                       document->error, document->error_size);
+    return *made != NULL;
+}
+
 static int apply(const char *yaml, size_t length, const char *name, const struct raw *raw, struct scenario *scenario,
                  char *error, size_t error_size)
 {
+    const struct document document = {yaml, length, name, error, error_size};
     for (size_t i = 0; i < scenario_key_count; i++) {
         const struct scenario_key *key = &scenario_keys[i];
-        char *made = NULL;
-        const char *value = raw->values[i];
-        if (key->type == KEY_POINTS && raw->points != NULL) {
-            value = made = points_text(yaml, length, name, raw, error, error_size);
-        } else if (raw->lists[i] != NULL) {
-            value = made = list_text(name, raw->lists[i], raw->list_counts[i], error, error_size);
-        }
-        const bool made_badly = made == NULL && (key->type == KEY_POINTS ? raw->points != NULL : raw->lists[i] != NULL);
-        char reason[600], problem[8];
-        const int status =
-            made_badly || value == NULL ? 0 : scenario_set(scenario, key->path, value, reason, sizeof reason);
-        free(made);
-        if (made_badly) {
+        const char *value;
+        char *made, reason[600], problem[8];
+        if (!value_text(&document, raw, i, scenario, &value, &made)) {
             return -1;
         }
+        const int status = value == NULL ? 0 : scenario_set(scenario, key->path, value, reason, sizeof reason);
+        free(made);
         if (status != 0) {
             return fail(error, error_size, "%s:%zu: %s", name,
                         line_of(yaml, length, key->path, problem, sizeof problem), reason);

@@ -4,6 +4,7 @@
 #include "world/campaign.h"
 #include "world/clusters.h"
 #include "world/recipe.h"
+#include "world/splitmix.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -96,6 +97,18 @@ static void lay_rings(struct deployment *deployment, const struct scenario *scen
     }
 }
 
+static void lay_strata(struct deployment *deployment, const struct scenario *scenario, uint64_t seed)
+{
+    const struct scenario_field field = scenario_field(scenario);
+    const size_t side = (size_t)scenario->network.grid;
+    struct splitmix stream = splitmix_begin(seed, SPLITMIX_DEPLOYMENT);
+    for (size_t i = 0; i < deployment->count; i++) {
+        struct recorded_node *node = &deployment->nodes[i];
+        node->x_m = ((double)(i % side) + splitmix_uniform(&stream)) * (field.width_m / (double)side);
+        node->y_m = ((double)(i / side) + splitmix_uniform(&stream)) * (field.height_m / (double)side);
+    }
+}
+
 static int by_id(const void *a, const void *b)
 {
     const uint32_t left = ((const struct recorded_node *)a)->id, right = ((const struct recorded_node *)b)->id;
@@ -133,7 +146,7 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
     if (scenario->network.layout == LAYOUT_FILE) {
         return from_file(deployment, scenario->network.file, error, error_size);
     }
-    *deployment = (struct deployment){.count = (size_t)scenario->network.nodes};
+    *deployment = (struct deployment){.count = scenario_nodes(scenario)};
     deployment->nodes = calloc(deployment->count, sizeof *deployment->nodes);
     if (!deployment->nodes) {
         snprintf(error, error_size, "network.nodes: out of memory for %zu nodes", deployment->count);
@@ -160,6 +173,9 @@ int deployment_make(struct deployment *deployment, const struct scenario *scenar
         break;
     case LAYOUT_RINGS:
         lay_rings(deployment, scenario);
+        break;
+    case LAYOUT_STRAT:
+        lay_strata(deployment, scenario, seed);
         break;
     case LAYOUT_FILE:
         break;

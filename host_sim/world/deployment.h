@@ -25,6 +25,7 @@ struct deployment {
  *   2 : 1 they are made square and the last row has fewer nodes, evenly spread.
  * hashed: node i = (width U(seed, 1, i), height U(seed, 2, i)) of recipe.h.
  * rings: as clusters.h says.
+ * strat: network.grid x network.grid cells that fill the field, row by row, one node uniform in each: x, then y of splitmix.h.
  * file: the nodes of scenario->network.file, sorted.
  *
  * With network.starts the seed is that of the campaign's deployment. Returns 0, or -1 with one line in `error` (a file that cannot be used, no

@@ -191,7 +191,7 @@ int trajectory_make(struct trajectory *trajectory, const struct scenario *scenar
         break;
     case PATH_GAUSS_MARKOV:
     case PATH_WHITE_ACCELERATION:
-    case PATH_NONE:
+    default: /* none, or targets.h's */
         break;
     }
     return 0;

@@ -27,7 +27,7 @@ struct trajectory {
     double duration_s;
 };
 
-/* The path of scenario->source.
+/* The path of scenario->source, where there is one source (targets.h has the others).
  * PATH_ARCS: from the first point A to the second B along two arcs of 90 degrees, left then right, radius |AB| / (4 sin 45deg), at
  * source.speed_mps; the source sets out 45 degrees to the right of B.
  * PATH_GAUSS_MARKOV: straight from each place of mobility.h to the next, one in a sampling interval; `seed` matters for it and the next alone.

@@ -1,0 +1,99 @@
+/* The published numbers of the generator, and where it puts the nodes of deployments. */
+#include "port.h"
+#include "unity.h"
+#include "world/deployment.h"
+#include "world/splitmix.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static FILE *open_answers(const char *name)
+{
+    char path[1024], header[200];
+    snprintf(path, sizeof path, MOTEHOUND_KNOWN_ANSWERS "/han/%s", name);
+    FILE *file = fopen(path, "r");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    TEST_ASSERT_NOT_NULL(fgets(header, sizeof header, file));
+    return file;
+}
+
+static void numbers(void)
+{
+    FILE *file = open_answers("rng.csv");
+    uint64_t seed, x[3];
+    unsigned stream;
+    double uniform, normal;
+    size_t rows = 0;
+    while (fscanf(file, "%" SCNu64 ",%u,%" SCNx64 ",%" SCNx64 ",%" SCNx64 ",%lf,%lf", &seed, &stream, &x[0], &x[1],
+                  &x[2], &uniform, &normal) == 7) {
+        struct splitmix s = splitmix_begin(seed, (enum splitmix_stream)stream);
+        for (int i = 0; i < 3; i++) {
+            TEST_ASSERT_TRUE(splitmix_next(&s) == x[i]);
+        }
+        s = splitmix_begin(seed, (enum splitmix_stream)stream);
+        TEST_ASSERT_TRUE(fabs(splitmix_uniform(&s) - uniform) <= 1e-16);
+        TEST_ASSERT_TRUE(fabs(splitmix_normal(&s) - normal) <= 1e-14);
+        rows++;
+    }
+    fclose(file);
+    TEST_ASSERT_GREATER_THAN_size_t(9, rows);
+}
+
+static struct point strat(int64_t side, uint64_t seed, size_t index)
+{
+    struct scenario scenario;
+    struct deployment deployment;
+    char error[300];
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
+    scenario.field.width_m = scenario.field.height_m = 1000;
+    scenario.network.layout = LAYOUT_STRAT;
+    scenario.network.grid = side;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, deployment_make(&deployment, &scenario, seed, error, sizeof error), error);
+    TEST_ASSERT_EQUAL_size_t((size_t)(side * side), deployment.count);
+    TEST_ASSERT_LESS_THAN_size_t(deployment.count, index);
+    const struct point place = {deployment.nodes[index].x_m, deployment.nodes[index].y_m};
+    deployment_free(&deployment);
+    scenario_free(&scenario);
+    return place;
+}
+
+/* Nodes anywhere: x then y of 1000 m. */
+static struct point anywhere(uint64_t seed, size_t index)
+{
+    struct splitmix s = splitmix_begin(seed, SPLITMIX_DEPLOYMENT);
+    for (size_t i = 0; i < 2 * index; i++) {
+        (void)splitmix_next(&s);
+    }
+    const double x_m = 1000 * splitmix_uniform(&s);
+    return (struct point){x_m, 1000 * splitmix_uniform(&s)};
+}
+
+static void places(void)
+{
+    FILE *file = open_answers("deploy.csv");
+    char kind[20];
+    int64_t n;
+    uint64_t seed;
+    size_t index, rows = 0;
+    double x_m, y_m;
+    while (fscanf(file, "%19[a-z],%" SCNd64 ",%" SCNu64 ",%zu,%lf,%lf\n", kind, &n, &seed, &index, &x_m, &y_m) == 6) {
+        const struct point p = strcmp(kind, "strat") == 0 ? strat(n, seed, index) : anywhere(seed, index);
+        TEST_ASSERT_TRUE_MESSAGE(fabs(p.x_m - x_m) <= 1e-9 && fabs(p.y_m - y_m) <= 1e-9, kind);
+        rows++;
+    }
+    fclose(file);
+    TEST_ASSERT_GREATER_THAN_size_t(29, rows);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(numbers);
+    RUN_TEST(places);
+    port_exit(UNITY_END() > 0);
+}
