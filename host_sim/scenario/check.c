@@ -285,8 +285,8 @@ static int check_targets(const struct scenario *scenario, const char *name, char
                                           : 0;
     }
     if (!sound) {
-        return fail(error, error_size, "%s: source.path: expected one of a single source unless sensor.quantity is sound",
-                    name);
+        return fail(error, error_size,
+                    "%s: source.path: expected one of a single source unless sensor.quantity is sound", name);
     }
     if (path == PATH_SCRIPTED && scenario->targets_count == 0) {
         return fail(error, error_size, "%s: targets: expected at least one for source.path scripted, found none", name);

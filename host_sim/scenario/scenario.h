@@ -22,7 +22,7 @@ enum path_kind {
     PATH_STILL,     /* stays at the first point for duration_s */
     PATH_GAUSS_MARKOV, /* struct target's random walk for duration_s, its own for every seed */
     PATH_WHITE_ACCELERATION, /* at constant velocity but for struct target's accelerations, for duration_s, its own for every seed */
-    PATH_NONE,     /* there is no source: for duration_s the nodes report synthetic traffic */
+    PATH_NONE,               /* there is no source: for duration_s the nodes report synthetic traffic */
     PATH_SCRIPTED, /* the targets of `targets`, each on its own way */
     PATH_PARALLEL, /* target.count targets side by side; this and all below: world/targets.h */
     PATH_CROSSING,
@@ -129,7 +129,7 @@ struct scenario {
     } network;
     struct {
         enum routing_kind routing;
-        double hello_s; /* between a node's hellos to its neighbours */
+        double hello_s;        /* between a node's hellos to its neighbours */
         unsigned election;     /* enum mh_election or election_rule */
         int64_t members;       /* of a cluster beside its head; 0: the election rule's own number */
         int64_t horizon;       /* predicted samples that an election looks at */

@@ -126,8 +126,8 @@ static int out_of_memory(char *error, size_t error_size)
 static int make_formation(struct targets *targets, const struct scenario *scenario, uint64_t seed, char *error,
                           size_t error_size)
 {
-    static void (*const kinds[])(struct trajectory *, const struct member *) = {
-        go_parallel, go_across, go_and_part, go_in_lane, go_and_turn, go_in_ring};
+    static void (*const kinds[])(struct trajectory *, const struct member *) = {go_parallel, go_across,   go_and_part,
+                                                                                go_in_lane,  go_and_turn, go_in_ring};
     const size_t legs = 5 > scenario->target.turns + 1 ? 5 : (size_t)scenario->target.turns + 1;
     struct splitmix stream = splitmix_begin(seed, SPLITMIX_TARGETS);
     const double direction_rad = 2 * pi * splitmix_uniform(&stream);
@@ -262,8 +262,8 @@ int targets_make(struct targets *targets, const struct scenario *scenario, uint6
                  size_t error_size)
 {
     const enum path_kind path = scenario->source.path;
-    *targets = (struct targets){.count = path == PATH_NONE          ? 0
-                                         : path == PATH_SCRIPTED    ? scenario->targets_count
+    *targets = (struct targets){.count = path == PATH_NONE           ? 0
+                                         : path == PATH_SCRIPTED     ? scenario->targets_count
                                          : targets_are_several(path) ? (size_t)scenario->target.count
                                                                      : 1};
     targets->list = calloc(targets->count + 1, sizeof *targets->list);

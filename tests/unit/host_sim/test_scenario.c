@@ -104,7 +104,8 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation
         {"targets:\n- {points: [{x_m: 1, y_m: 2}], loudness: loud}",
          "a.yaml:2: targets[0].loudness: expected a number, found 'loud'", ""},
         {"targets:\n- {speed_mps: 2}", "a.yaml:2: targets: expected a key points", ""},
-        {"targets: [{points: [{x_m: 1, y_m: 2}], speed_mps: -1}]", "a.yaml:1: targets: expected at most 16 targets", ""},
+        {"targets: [{points: [{x_m: 1, y_m: 2}], speed_mps: -1}]", "a.yaml:1: targets: expected at most 16 targets",
+         ""},
         {"clusters: {nodes: [3, 4, x]}",
          "a.yaml:1: clusters.nodes: expected 1 to 16 numbers 1 to 32 `a, b, ...`, found '3,4,x'", ""},
         {"clusters: {nodes: [3, 33]}", "a.yaml:1: clusters.nodes: expected 1 to 16 numbers 1 to 32", "'3,33'"},
@@ -113,7 +114,8 @@ static void a_bad_file_is_refused_in_one_line_with_file_line_key_and_expectation
         {"network: {nodes: 4.5}", "a.yaml:1: network.nodes: expected a whole number", "'4.5'"},
         {"tracker: {name: kalman}",
          "a.yaml:1: tracker.name: expected one of "
-         "diffusion/luo/range/pftl/msl/centroid/cv_ukf/cv_ekf/gas/gas_small/gas_ekf/gas_ukf/acoustic/dm/ml, found 'kalman'",
+         "diffusion/luo/range/pftl/msl/centroid/cv_ukf/cv_ekf/gas/gas_small/gas_ekf/gas_ukf/acoustic/dm/ml, found "
+         "'kalman'",
          ""},
         {"tracker: {nonlinear: yes}", "a.yaml:1: tracker.nonlinear: expected true or false, found 'yes'", ""},
         {"name: a\nname: b", "a.yaml:1: name: expected once, found twice", ""},

@@ -3,6 +3,7 @@
 #include "unity.h"
 #include "world/deployment.h"
 #include "world/splitmix.h"
+#include "world/trajectory.h"
 
 #include <inttypes.h>
 #include <math.h>

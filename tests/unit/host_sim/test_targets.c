@@ -187,8 +187,8 @@ static void scripted(void)
                         "targets:\n"
                         "- points: [{x_m: 0, y_m: 0}, {x_m: 100, y_m: 0}]\n"
                         "- {start_s: 10, speed_mps: 20, loudness: 2, points: [{x_m: 1, y_m: 2}, {x_m: 1, y_m: 42}]}\n";
-    TEST_ASSERT_EQUAL_INT_MESSAGE(
-        0, scenario_parse(yaml, sizeof yaml - 1, "a.yaml", &scenario, error, sizeof error), error);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_parse(yaml, sizeof yaml - 1, "a.yaml", &scenario, error, sizeof error),
+                                  error);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_check(&scenario, "a.yaml", error, sizeof error), error);
     TEST_ASSERT_EQUAL_INT(0, targets_make(&targets, &scenario, 1, error, sizeof error));
     TEST_ASSERT_EQUAL_size_t(2, targets.count);
@@ -226,8 +226,8 @@ static void sound(void)
     TEST_ASSERT_TRUE(fabs(variance / expected_variance - 1) < 0.06);
     const struct point place = {0, 20};
     TEST_ASSERT_TRUE(fabs(sound_reading(&s, &targets, 1, 5, place) - sound_reading(&s, &targets, 1, 5, place)) < 1e-12);
-    TEST_ASSERT_TRUE(
-        fabs(sound_reading(&s, &targets, 1, 5, place) - sound_reading(&s, &targets, 1.001, 5, place)) > 1e-6);
+    TEST_ASSERT_TRUE(fabs(sound_reading(&s, &targets, 1, 5, place) - sound_reading(&s, &targets, 1.001, 5, place)) >
+                     1e-6);
 }
 
 /* What does not go together is refused with the key's name. */
@@ -258,8 +258,8 @@ static void refused(void)
         TEST_ASSERT_EQUAL_INT_MESSAGE(-1, scenario_check(&scenario, "test", error, sizeof error), cases[i].settings);
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, strncmp(error, cases[i].message, strlen(cases[i].message)), error);
     }
-    static const char *const lists[] = {"0,1,1", "0,1: 1,1", "0,0,1: 1,1", "-1,1,1: 1,1", "0,1,0: 1,1", "0,1,1: 1",
-                                        "0,1,1: 1,1 |"};
+    static const char *const lists[] = {"0,1,1",      "0,1: 1,1", "0,0,1: 1,1",  "-1,1,1: 1,1",
+                                        "0,1,0: 1,1", "0,1,1: 1", "0,1,1: 1,1 |"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         TEST_ASSERT_EQUAL_INT_MESSAGE(-1, scenario_set(&scenario, "targets", lists[i], error, sizeof error), lists[i]);
     }
