@@ -69,6 +69,26 @@ struct mh_fixed_counters {
     uint32_t uncorrected; /* ... and that did not */
 };
 
+/* What one node or many did with targets that have a head each (prince.h). */
+struct mh_prince_counters {
+    uint32_t founded;       /* targets */
+    uint32_t located;       /* fixes, each of which begins a cluster */
+    uint32_t princes;       /* of these by the prince, ... */
+    uint32_t exceptions;    /* ... by an outer node, ... */
+    uint32_t regents;       /* ... by a regent, ... */
+    uint32_t competitions;  /* ... by who won a competition, or detected the target first */
+    uint32_t retries;       /* queries sent again */
+    uint32_t fails;         /* fail_t said by locators, ... */
+    uint32_t watchdogs;     /* ... by heads, ... */
+    uint32_t relays;        /* ... again, by winners without answers */
+    uint32_t repeated;      /* awake_t said again, to who had not heard it */
+    uint32_t double_heads;  /* heads that yielded to another of their generation */
+    uint32_t lost;          /* targets that their head, or last locator, gave up */
+    uint32_t evicted;       /* rows that gave way, or that there was no room for */
+    uint32_t refused;       /* messages with absurd content, or of no time about now */
+    uint32_t merged, split; /* groups */
+};
+
 /* What happened to the messages of one node or of many. */
 struct mh_protocol_counters {
     uint32_t lost[MH_LOSSES];
@@ -76,6 +96,7 @@ struct mh_protocol_counters {
     struct mh_cluster_counters clusters;
     struct mh_search_counters searches;
     struct mh_fixed_counters fixed;
+    struct mh_prince_counters princes;
 };
 
 /* What a protocol asks of the mote that runs it. `context` is the mote's own. */
