@@ -83,7 +83,7 @@ class Writer:
     def truth_t(self, truth: Any) -> None:
         self.at(truth.time_s)
         places = [(truth.x_m, truth.y_m, 0.0)] if truth.present else []
-        self.log(truth.run, "truth", self.rerun.Points3D(places, radii=SOURCE_M, colors=TRUTH))
+        self.log(truth.run, f"truth_{truth.target}", self.rerun.Points3D(places, radii=SOURCE_M, colors=TRUTH))
 
     def track_t(self, track: Any) -> None:
         self.at(track.time_s)
@@ -102,6 +102,12 @@ class Writer:
         head = places.get(cluster.head)
         spokes = [np.array((head, place)) for place in asked] if head else []
         self.log(cluster.run, "cluster", self.rerun.LineStrips3D(spokes, colors=CLUSTER))
+
+    def watch_t(self, watch: Any) -> None:
+        self.at(watch.time_s)
+        places = self.places[watch.run]
+        way = [places[node] for node in (watch.head, watch.prince) if node in places]
+        self.log(watch.run, f"track_{watch.target}/watch", self.rerun.LineStrips3D([way] if len(way) > 1 else [], colors=CLUSTER))
 
     def frame_t(self, frame: Any) -> None:
         places = self.places[frame.run]

@@ -19,6 +19,7 @@ from . import messages
 from .event_log import EventLog
 from .failure import Failure
 
+GROUP_MAX = 4  # targets in a group
 TIME_MAX_S = 1e9  # beyond it a time is damage
 
 
@@ -71,9 +72,21 @@ class Run:
         self.totals: dict[str, float] = {}
         self.places: dict[int, tuple[float, float]] = {}
         self.frames = Table([("sender", "i4"), ("destination", "i4"), ("kind", "u1")])
-        self.truth = Table([("present", "?"), ("x", "f8"), ("y", "f8")])
+        self.truth = Table([("target", "i4"), ("present", "?"), ("x", "f8"), ("y", "f8")])
+        self.targets = 0  # that there truly are
+        self.numbers: dict[int, int] = {}  # the true target that each one followed was first taken for
         self.track = Table(
-            [("target", "i4"), *((name, "f8") for name in ("x", "y", "xx", "xy", "yy", "true_x", "true_y", "error"))]
+            [
+                *((name, "i4") for name in ("target", "mode", "members", "flags", "head")),
+                ("of", "i4", (GROUP_MAX,)),
+                *((name, "f8") for name in ("x", "y", "xx", "xy", "yy", "extent", "true_x", "true_y", "error")),
+            ]
+        )
+        self.watch = Table(
+            [
+                *((name, "i4") for name in ("target", "head", "prince", "members")),
+                *((name, "f8") for name in ("prince_s", "x", "y", "vx", "vy", "sd", "extent")),
+            ]
         )
         self.sink = Table([("x", "f8"), ("y", "f8"), ("error", "f8")])  # what the sink has of the target
         self.clusters = Table([("head", "i4"), ("members", "i4")])  # the second: which entry of the next
@@ -131,7 +144,8 @@ class Recording:
         run.frames.append((frame.time_s, frame.sender, frame.destination, kind))
 
     def _truth_t(self, run: Run, truth: Any) -> None:
-        run.truth.append((truth.time_s, truth.present, truth.x_m, truth.y_m))
+        run.truth.append((truth.time_s, truth.target, truth.present, truth.x_m, truth.y_m))
+        run.targets = max(run.targets, truth.target + 1)
 
     def _track_t(self, run: Run, track: Any) -> None:
         true = (track.true_x_m, track.true_y_m) if track.true_known else (math.nan, math.nan)
@@ -140,7 +154,18 @@ class Recording:
             run.sink.append((track.time_s, track.x_m, track.y_m, error))
             return
         covariance = (track.cov_xx_m2, track.cov_xy_m2, track.cov_yy_m2)
-        run.track.append((track.time_s, track.target, track.x_m, track.y_m, *covariance, *true, error))
+        if track.number >= 0:
+            run.numbers.setdefault(track.target, track.number)
+        how = (track.mode, track.members, track.flags, track.head, tuple(track.of))
+        place = (track.x_m, track.y_m, *covariance, track.extent_m)
+        run.track.append((track.time_s, track.target, *how, *place, *true, error))
+
+    def _watch_t(self, run: Run, watch: Any) -> None:
+        if watch.number >= 0:
+            run.numbers.setdefault(watch.target, watch.number)
+        who = (watch.target, watch.head, watch.prince, watch.members)
+        place = (watch.x_m, watch.y_m, watch.vx_mps, watch.vy_mps, watch.sd_m, watch.extent_m)
+        run.watch.append((watch.time_s, *who, watch.prince_s, *place))
 
     def _cluster_t(self, run: Run, cluster: Any) -> None:
         run.members.append(tuple(cluster.members))

@@ -77,6 +77,55 @@ def clustered_run() -> list[tuple[str, Any]]:
     return begin + sorted(rest, key=lambda told: told[1].time_s)
 
 
+SIDE, SPACING_M = 12, 20.0  # of the motes of targets_run
+
+
+def at(target: int, time_s: float) -> tuple[float, float]:
+    """Three targets from left to right at 10 m/s: the lower two come together until 12 s and part again."""
+    apart = max(8.0, abs(time_s - 12.0) * 5.0) if target < 2 else 60.0
+    return 10.0 * time_s, 60.0 + (-apart, apart, apart + 20.0)[target] / (2.0 if target < 2 else 1.0)
+
+
+def nearest(x: float, y: float) -> int:
+    return SIDE * min(SIDE - 1, max(0, round(y / SPACING_M))) + min(SIDE - 1, max(0, round(x / SPACING_M)))
+
+
+def targets_run(seconds: int = 22) -> list[tuple[str, Any]]:
+    """Targets 16, 33 and 50; the first two are the group 16 from 10 s to 14 s. Every 2 s each has a new head, whose prince is the next."""
+    found: list[tuple[str, Any]] = [("RUN_BEGIN", message("motehound.run_begin_t", seed=4, scenario="three", version="test"))]
+    for node in range(SIDE * SIDE):
+        place = {"x_m": SPACING_M * (node % SIDE), "y_m": SPACING_M * (node // SIDE)}
+        found.append(("NODE", message("motehound.node_t", node=node, **place)))
+    for second in range(seconds):
+        time = float(second)
+        for target in range(3):
+            x, y = at(target, time)
+            place = {"x_m": x, "y_m": y, "vx_mps": 10.0}
+            found.append(("TRUTH", message("motehound.truth_t", time_s=time, target=target, present=True, **place)))
+        if second % 2 or second == 0:
+            continue
+        together = 10 <= second <= 14
+        for identifier, number in ((16, 0), (33, 1), (50, 2)):
+            if identifier == 33 and together:
+                continue
+            x, y = at(number, time)
+            group: dict[str, Any] = {"mode": 0 if number == 2 else 1, "members": 1, "number": number}
+            if identifier == 16 and together:
+                x, y = x, 60.0
+                group = {"mode": 2, "members": 2, "number": -1, "of": [16, 33, 0, 0], "extent_m": 6.0}
+            flags = 512 if second > 14 and number < 2 else 0
+            head = nearest(x, y)
+            prince = -1 if second == 6 else nearest(x + 20.0, y)
+            known = {"target": identifier, "head": head}
+            watch = {"x_m": x - 1.0, "y_m": y + 1.0, "vx_mps": 10.0, "sd_m": 2.0, "prince": prince, "prince_s": time + 1.5}
+            watch |= {name: value for name, value in group.items() if name in ("number", "members", "extent_m")}
+            found.append(("FRAME", frame(time, head)))
+            found.append(("TRACK", track(time, x - 1.0, y + 1.0, flags=flags, true_x_m=x, true_y_m=y, **known, **group)))
+            found.append(("WATCH", message("motehound.watch_t", time_s=time, **known, **watch)))
+    found.append(("RUN_END", message("motehound.run_end_t", time_s=float(seconds))))
+    return found
+
+
 def write_log(path: Path, told: list[tuple[str, Any]]) -> Path:
     log = lcm.EventLog(str(path), "w", overwrite=True)
     last = 0

@@ -186,7 +186,7 @@ def test_rerun_has_every_estimate(tmp_path: Path) -> None:
     for rows, branch in re.findall(r"with (\d+) rows .* - (/\S+) -", printed):
         count[branch] += int(rows)
     for run in (0, 1):
-        assert [count[f"/run_{run}/{name}"] for name in ("motes", "truth", "track_0", "track_0/ellipse")] == [
+        assert [count[f"/run_{run}/{name}"] for name in ("motes", "truth_0", "track_0", "track_0/ellipse")] == [
             1,
             20,
             20,

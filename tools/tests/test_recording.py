@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from logs import clustered_run, frame, message, small_run, track, write_log
+from logs import clustered_run, frame, message, small_run, targets_run, track, write_log
 
 from motehound_tools import recording
 from motehound_tools.event_log import EventLog
 from motehound_tools.recording import Recording, Table
-from motehound_tools.view import scene
+from motehound_tools.view import scene, targets
+from motehound_tools.view.colours import TARGETS, TRACK, TRUTH
 
 
 def taken(told: list) -> Recording:
@@ -115,14 +116,58 @@ def test_frames_in_the_air_go_from_their_sender_to_who_they_are_for() -> None:
 
 def test_track_and_truth_at_a_time() -> None:
     run = taken(small_run()).runs[0]
-    found = scene.track(run, 7.5)
+    found = targets.tracks(run, 7.5)
     assert (found["heads"]["x"], found["heads"]["y"]) == ([7.0], [7.0]) and len(found["paths"]["xs"][0]) == 8
+    assert (found["heads"]["color"], found["heads"]["label"]) == ([TRACK], [""]) and not found["extents"]["x"]
     x, y = found["ellipses"]["xs"][0] - 7.0, found["ellipses"]["ys"][0] - 7.0
     assert (x / 4.0) ** 2 + (y / 2.0) ** 2 == pytest.approx(np.ones_like(x))  # two standard deviations of 2 and 1 m
-    path, here = scene.truth(run, 7.5)
-    assert here == pytest.approx((10.5, 3.5)) and len(path["x"]) == 9
-    assert scene.track(run, 19.0 + 6.0)["heads"]["x"] == []  # long past the last estimate
-    assert scene.truth(run, 25.0)[1] is None
+    found = targets.truths(run, 7.5)
+    assert (found["here"]["x"], found["here"]["y"]) == ([10.5], [3.5]) and len(found["truth"]["xs"][0]) == 9
+    assert found["truth"]["color"] == [TRUTH]
+    assert targets.tracks(run, 19.0 + 6.0)["heads"]["x"] == []  # long past the last estimate
+    assert targets.truths(run, 25.0)["here"]["x"] == []
+    assert targets.watches(run, 7.5)["princes"]["x"] == [] and targets.summary(run, 7.5)[0][1] == "0, single"
+
+
+def test_every_target_has_its_colour_and_a_group_its_extent() -> None:
+    run = taken(targets_run()).runs[0]
+    assert run.targets == 3 and run.numbers == {16: 0, 33: 1, 50: 2}
+    apart, together, after = (targets.tracks(run, time) for time in (9.5, 12.5, 16.5))
+    assert apart["heads"]["label"] == ["16", "33", "50"] and apart["heads"]["color"] == list(TARGETS[:3])
+    assert together["heads"]["label"] == ["16 ×2", "50"] and together["paths"]["color"] == list(TARGETS[:3])
+    assert (together["extents"]["radius"], together["extents"]["y"]) == ([6.0], [61.0]) and not apart["extents"]["x"]
+    assert after["heads"]["label"] == ["16 ?", "33 ?", "50"]
+    true = targets.truths(run, 9.5)
+    assert true["truth"]["color"] == true["here"]["color"] == list(TARGETS[:3])
+    assert true["here"]["x"] == [95.0] * 3 and true["here"]["y"] == pytest.approx([53.75, 66.25, 140.0])
+    assert [told for _, *told, _ in targets.summary(run, 12.5)] == [
+        ["group of 2: 16, 33", "head 42, prince 43"],
+        ["50, single", "head 90, prince 91"],
+    ]
+    assert [error for *_, error in targets.summary(run, 12.5)] == ["1.41 m"] * 2
+    error = scene.timeline(run)["error"]
+    assert error["color"] == list(TARGETS[:3]) and [len(ys) for ys in error["ys"]] == [10, 7, 10]
+
+
+def test_heads_princes_and_where_they_expect_the_target() -> None:
+    run = taken(targets_run()).runs[0]
+    seen = targets.watches(run, 4.5)
+    assert [seen["watch_heads"][axis] for axis in "xy"] == [[40.0] * 3, [40.0, 80.0, 140.0]]
+    assert [seen["princes"][axis] for axis in "xy"] == [[60.0] * 3, [40.0, 80.0, 140.0]]
+    assert [list(xs) for xs in seen["ways"]["xs"]] == [[40.0, 60.0]] * 3
+    assert (seen["expected"]["x"], seen["expected"]["y"][2]) == ([44.0] * 3, 141.0)
+    x, y = (np.asarray(seen["areas"][axis][2]) for axis in ("xs", "ys"))  # a band of 2 x 2 m from (39, 141) on for 1.5 s
+    assert (x.min(), x.max(), y.min(), y.max()) == pytest.approx((35.0, 58.0, 137.0, 145.0))
+    alone = targets.watches(run, 6.5)
+    assert alone["princes"]["x"] == [] and len(alone["watch_heads"]["x"]) == 3
+    assert max(alone["areas"]["xs"][2]) == pytest.approx(59.0 + 10.0 * targets.AHEAD_S + 4.0)
+    x, y = (np.asarray(targets.watches(run, 12.5)["areas"][axis][0]) for axis in ("xs", "ys"))
+    assert (y.min(), y.max()) == pytest.approx((51.0, 71.0))  # of a group the extent besides
+    assert targets.watches(run, 10.5)["watch_heads"]["color"] == [TARGETS[0], TARGETS[2]]  # 33 is in the group
+    assert targets.watches(run, 20.0 + 1.5 + targets.HELD_S + 0.1)["areas"]["xs"] == []
+    still = run.watch.until(0.0 + 2.0)[-1].copy()
+    still["vx"] = 0.0
+    assert np.hypot(targets.area(still)[0] - still["x"], targets.area(still)[1] - still["y"]) == pytest.approx(4.0)
 
 
 def test_what_the_sink_has_is_no_estimate_of_a_head() -> None:
@@ -150,4 +195,4 @@ def test_timeline_counts_every_frame() -> None:
     run = taken(small_run()).runs[0]
     lines = scene.timeline(run)
     assert lines["traffic"]["rate"].sum() * (20.0 / 240) == pytest.approx(40)
-    assert lines["error"]["error"] == pytest.approx(np.full(20, 5.0))
+    assert [list(line) for line in lines["error"]["ys"]] == [pytest.approx([5.0] * 20)]

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import Browser
-from logs import clustered_run, program, simulated, small_run, write_log
+from logs import clustered_run, program, simulated, small_run, targets_run, write_log
 from PIL import Image
 
-from motehound_tools.view.colours import CLUSTER, MAP, SINK, TRACK
+from motehound_tools.view.colours import CLUSTER, MAP, SINK, TARGETS, TRACK
 
 TOOLS = Path(__file__).resolve().parents[1]
 OWN_NETWORK = "MOTEHOUND_OWN_NETWORK"
@@ -166,9 +166,9 @@ def test_mouse_hovers_and_zooms_and_the_layers_agree(browser: Browser, served: S
     legend = "document.querySelector('[data-layer=track]')"
     hidden = "model('over').renderers.filter((one) => one.glyph.tags == 'track').map((one) => one.visible).join()"
     browser.evaluate(f"{legend}.click()")
-    assert browser.evaluate(hidden) == "false,false,false"
+    assert browser.evaluate(hidden) == "false,false,false,false"
     browser.evaluate(f"{legend}.click()")
-    assert browser.evaluate(hidden) == "true,true,true"
+    assert browser.evaluate(hidden) == "true,true,true,true"
     frame = """(name) => { const box = Bokeh.index.get_by_id(model(name).id).frame.bbox;
         return [box.left, box.top, box.width, box.height] }"""
     assert browser.evaluate(f"({frame})('map')") == browser.evaluate(f"({frame})('over')")
@@ -198,6 +198,19 @@ def test_clusters_are_shown(browser: Browser, tmp_path: Path) -> None:
         shot = browser.screenshot("clusters.png")
         assert pixels(shot, CLUSTER) > 100 and pixels(shot, SINK) > 50
         assert "members now" in browser.evaluate("model('counters').text")
+
+
+@needs_browser
+def test_several_targets_are_shown(browser: Browser, tmp_path: Path) -> None:
+    with Served(str(write_log(tmp_path / "events.lcm", targets_run()))) as one:
+        opened(browser, f"{one.url}?time=12.9&play=0&theme=light")
+        browser.until("document.title.includes('12.9 s')")
+        names = ("truth", "here", "heads", "extents", "watch_heads", "princes", "areas", "expected")
+        assert [length(browser, name) for name in names] == [3, 3, 2, 1, 2, 2, 2, 2]
+        shot = browser.screenshot("targets.png")
+        assert all(pixels(shot, colour) > 100 for colour in TARGETS[:3]), "each in its colour"
+        counters = browser.evaluate("model('counters').text")
+        assert "group of 2: 16, 33" in counters and "head 90, prince 91" in counters
 
 
 @needs_browser

@@ -8,7 +8,9 @@ from bokeh.palettes import Viridis256
 
 # IBM's colour-blind safe palette
 BLUE, VIOLET, MAGENTA, ORANGE, AMBER, GREY = "#648fff", "#b07cf7", "#dc267f", "#fe6100", "#ffb000", "#9aa7b8"
+TEAL = "#12a594"
 TRACK, TRUTH, DEAD, CLUSTER, SINK = MAGENTA, "#8a97a8", ORANGE, AMBER, BLUE
+TARGETS = (MAGENTA, TEAL, ORANGE, BLUE, VIOLET)  # by number of the target; TRACK where there is only one
 INK, FAINT = "#8a97a8", "rgba(138, 151, 168, 0.18)"
 MAP = Viridis256[36:240]  # without the ends, which one of the two backgrounds would swallow
 KINDS = {

@@ -8,6 +8,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader
 
 from ..recording import Recording, Run
+from . import targets
 from .colours import colour_of
 from .scene import Motes
 
@@ -20,7 +21,8 @@ def figures(run: Run, motes: Motes, time: float) -> list[tuple[str, str]]:
     errors = estimates["error"][np.isfinite(estimates["error"])]
     found = [("estimates", f"{len(estimates):,}")]
     if len(errors):
-        found.append(("error now", f"{errors[-1]:.2f} m"))
+        if not targets.are_told_apart(run):
+            found.append(("error now", f"{errors[-1]:.2f} m"))
         found.append(("error, RMS so far", f"{math.sqrt(np.mean(errors**2)):.2f} m"))
     kept = run.sink.until(time)["error"][-1:]
     if np.isfinite(kept).any():
@@ -49,6 +51,7 @@ def text(recording: Recording, run: Run, motes: Motes, time: float, on_screen: i
         frames=motes.frames_seen,
         on_screen=on_screen,
         figures=figures(run, motes, time),
+        targets=targets.summary(run, time) if targets.are_told_apart(run) else [],
         kinds=[
             (kind, colour_of(kind), int(motes.sent_of_kind[number]))
             for kind, number in recording.kinds.items()

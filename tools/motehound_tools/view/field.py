@@ -6,12 +6,13 @@ import math
 from typing import Any
 
 import numpy as np
+from bokeh.core.properties import value as literal
 from bokeh.models import ColorBar, ColumnDataSource, HoverTool, LinearColorMapper, Range1d, WheelZoomTool
 from bokeh.plotting import figure
 
 from ..recording import Run
-from . import scene
-from .colours import CLUSTER, DEAD, INK, MAP, SINK, TRACK, TRUTH, ink
+from . import scene, targets
+from .colours import CLUSTER, DEAD, INK, MAP, SINK, ink
 
 SHADES = {
     "sent": ("frames sent", "frames sent"),
@@ -27,7 +28,9 @@ TIPS = [
     ("energy spent", "@energy{0,0.0} mJ"),
     ("clock error", "@clock_error{0.000} ms"),
 ]
-AWAKE, ASLEEP = 0.75, 0.3  # how opaque a mote is; with clusters, those that nobody asks sleep
+AWAKE, ASLEEP = 0.75, 0.3  # how opaque a mote is; with clusters and heads that watch, most sleep
+FONT = "Inter, 'Segoe UI', system-ui, 'Helvetica Neue', Arial, sans-serif"
+OUTLINE = "rgba(255, 255, 255, 0.65)"
 MARGINS = {
     "min_border_left": 65,
     "min_border_right": 85,
@@ -129,9 +132,12 @@ class Field:
         plot.quadratic("x0", "y0", "x1", "y1", "cx", "cy", source=arcs, line_width=1.8, tags=["unicasts"], **line)
         pulses = self._source("pulses", "x y alpha color")
         plot.scatter("x", "y", source=pulses, size=7, color="color", line_color=None, alpha="alpha", tags=["unicasts"])
-        truth = {"line_color": TRUTH, "tags": ["truth"]}
-        plot.line("x", "y", source=self._source("truth", "x y"), line_width=5, line_alpha=0.55, **truth)
-        plot.scatter("x", "y", source=self._source("here", "x y"), size=18, fill_color=None, line_width=3, **truth)
+        truth = {"line_color": "color", "tags": ["truth"]}
+        paths = self._source("truth", "xs ys color")
+        plot.multi_line("xs", "ys", source=paths, line_width=5, line_alpha=0.55, **truth)
+        here = self._source("here", "x y color")
+        plot.scatter("x", "y", source=here, size=18, fill_color=None, line_width=3, **truth)
+        self._watches(plot)
         cluster = {"line_color": CLUSTER, "tags": ["cluster"]}
         plot.multi_line("xs", "ys", source=self._source("spokes", "xs ys"), line_alpha=0.6, line_width=1.2, **cluster)
         members = self._source("members", "x y")
@@ -143,12 +149,51 @@ class Field:
         plot.line("x", "y", source=path, line_width=1.5, line_dash=[5, 3], **sink)
         place = self._source("sink", "x y")
         plot.scatter("x", "y", source=place, size=13, marker="cross", line_width=3, **sink)
-        track = {"fill_color": TRACK, "line_width": 1.5, "tags": ["track"]}
-        paths = self._source("paths", "xs ys")
-        plot.multi_line("xs", "ys", source=paths, line_color=TRACK, line_width=2, tags=["track"])
-        plot.patches("xs", "ys", source=self._source("ellipses", "xs ys"), line_color=TRACK, fill_alpha=0.15, **track)
-        plot.scatter("x", "y", source=self._source("heads", "x y"), size=10, line_color="white", **track)
+        self._tracks(plot)
         return plot
+
+    def _watches(self, plot: Any) -> None:
+        """How the nodes around targets stand: where these are expected, the heads and the princes that are to be the next ones."""
+        watch = {"line_color": "color", "tags": ["watch"]}
+        areas = self._source("areas", "xs ys color")
+        plot.patches(
+            "xs", "ys", source=areas, fill_color="color", fill_alpha=0.12, line_dash=[3, 3], line_alpha=0.7, **watch
+        )
+        plot.multi_line("xs", "ys", source=self._source("ways", "xs ys color"), line_dash=[2, 3], **watch)
+        expected = self._source("expected", "x y color")
+        plot.scatter("x", "y", source=expected, size=11, marker="cross", line_width=2, **watch)
+        mark = {"fill_color": "color", "line_color": OUTLINE, "line_width": 1.0, "tags": ["watch"]}
+        heads = self._source("watch_heads", "x y color")
+        plot.scatter("x", "y", source=heads, size=16, marker="diamond", **mark)
+        princes = self._source("princes", "x y color")
+        plot.scatter("x", "y", source=princes, size=19, marker="star", **mark)
+
+    def _tracks(self, plot: Any) -> None:
+        track = {"line_color": "color", "tags": ["track"]}
+        paths = self._source("paths", "xs ys color")
+        plot.multi_line("xs", "ys", source=paths, line_width=2, **track)
+        ellipses = self._source("ellipses", "xs ys color")
+        plot.patches("xs", "ys", source=ellipses, fill_color="color", fill_alpha=0.15, line_width=1.5, **track)
+        group = {"line_color": "color", "tags": ["group"]}
+        extents = self._source("extents", "x y radius color")
+        plot.circle(
+            "x", "y", radius="radius", source=extents, fill_color=None, line_width=2.5, line_dash=[8, 4], **group
+        )
+        heads = self._source("heads", "x y color label")
+        plot.scatter("x", "y", source=heads, size=10, fill_color="color", line_color="white", tags=["track"])
+        plot.text(
+            "x",
+            "y",
+            text="label",
+            source=heads,
+            x_offset=13,
+            y_offset=-11,
+            text_color="color",
+            text_font_size="12px",
+            text_font_style="bold",
+            text_font=literal(FONT),
+            tags=["track"],
+        )
 
     def place(self, motes: scene.Motes) -> None:
         """Motes where they stand, of which nothing else is known yet."""
@@ -174,11 +219,10 @@ class Field:
     def move(self, run: Run, motes: scene.Motes, time: float, linger: float, colours: np.ndarray) -> int:
         """Everything that moves, as it is at this time; how many frames that shows."""
         frames = scene.frames_in_air(run, motes, time, linger, colours)
-        path, here = scene.truth(run, time)
-        now = {"x": [here[0]], "y": [here[1]]} if here else {"x": [], "y": []}
-        self.mote.fill_alpha = ASLEEP if len(run.clusters) else AWAKE
-        layers = frames | scene.track(run, time) | scene.cluster(run, motes, time) | scene.sink_view(run, time)
-        for name, data in (layers | {"truth": path, "here": now}).items():
+        self.mote.fill_alpha = ASLEEP if len(run.clusters) or len(run.watch) else AWAKE
+        layers = frames | targets.truths(run, time) | targets.tracks(run, time) | targets.watches(run, time)
+        layers |= scene.cluster(run, motes, time) | scene.sink_view(run, time)
+        for name, data in layers.items():
             if _rows(data) or _rows(self.sources[name].data):
                 self.sources[name].data = data
         return _rows(frames["arcs"]) + _rows(frames["rings"])

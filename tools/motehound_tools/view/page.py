@@ -27,6 +27,8 @@ SWATCHES = {
     "broadcasts": GREY,
     "truth": TRUTH,
     "track": TRACK,
+    "group": TRACK,
+    "watch": TRACK,
     "cluster": CLUSTER,
     "sink": SINK,
 }
@@ -182,7 +184,8 @@ class Page:
         slider.end = max(run.end_s, 1.0)
         if self.clock - self.touched > HANDS_OFF_S:
             self.set("slider", round(min(self.time, slider.end), 2))
-        if self.new("moving", (self.time, len(run.frames), len(run.track), len(run.sink), len(run.clusters))):
+        known = [len(table) for table in (run.frames, run.track, run.watch, run.sink, run.clusters)]
+        if self.new("moving", (self.time, *known)):
             colours = np.array([colour_of(kind) for kind in self.recording.kinds] or [GREY])
             self.on_screen = self.field.move(run, self.motes, self.time, LINGER_S * speed, colours)
             self.timeline.cursor.location = self.time

@@ -6,12 +6,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..recording import Run
+from .targets import TRAIL_S, colour
 
+POINTS_MAX = 2000  # of a line of the timeline
 FRAMES_MAX = 1500  # drawn at once; the newest ones
-TRAIL_S = 600.0  # of the paths behind the target
-STALE = 5  # sampling intervals after which an estimate is no longer where the source is
-ELLIPSE = np.linspace(0.0, 2.0 * np.pi, 49)
-ELLIPSE_SD = 2.0
 BEND = 0.18  # of an arc, as a share of its length
 
 
@@ -101,53 +99,6 @@ def frames_in_air(
     }
 
 
-def truth(run: Run, time: float) -> tuple[dict[str, np.ndarray], tuple[float, float] | None]:
-    """The path so far and where the source is now, between two samples on the line that joins them."""
-    past = run.truth.between(time - TRAIL_S, time)
-    past = past[past["present"]]
-    path = {"x": past["x"], "y": past["y"]}
-    if not len(past):
-        return path, None
-    rows = run.truth.snapshot()
-    after = rows[len(run.truth.until(time)) :][:1]
-    last = past[-1]
-    if not len(after):
-        return path, (last["x"], last["y"]) if time - last["time"] < 1.0 else None
-    if not after["present"][0]:
-        return path, None
-    share = (time - last["time"]) / max(float(after["time"][0] - last["time"]), 1e-9)
-    now = tuple(float(last[axis] + share * (after[axis][0] - last[axis])) for axis in ("x", "y"))
-    return {axis: np.append(path[axis], value) for axis, value in zip(("x", "y"), now)}, now
-
-
-def track(run: Run, time: float) -> dict[str, dict[str, list]]:
-    """Of every target the path of the estimates, the newest of them and its ellipse of two standard deviations."""
-    rows = run.track.between(time - TRAIL_S, time)
-    paths: dict[str, list] = {"xs": [], "ys": []}
-    ellipses: dict[str, list] = {"xs": [], "ys": []}
-    heads: dict[str, list] = {"x": [], "y": [], "error": []}
-    for target in np.unique(rows["target"]):
-        mine = rows[rows["target"] == target]
-        paths["xs"].append(mine["x"])
-        paths["ys"].append(mine["y"])
-        newest = mine[-1]
-        interval = float(np.median(np.diff(mine["time"][-STALE:]))) if len(mine) > 1 else 1.0
-        if time - newest["time"] > STALE * interval:
-            continue
-        for name in heads:
-            heads[name].append(float(newest[name]))
-        covariance = np.array([[newest["xx"], newest["xy"]], [newest["xy"], newest["yy"]]])
-        if np.isfinite(covariance).all():
-            values, vectors = np.linalg.eigh(covariance)
-            around = (
-                ELLIPSE_SD * np.sqrt(np.maximum(values, 0.0))[:, None] * np.array([np.cos(ELLIPSE), np.sin(ELLIPSE)])
-            )
-            x, y = vectors @ around
-            ellipses["xs"].append(newest["x"] + x)
-            ellipses["ys"].append(newest["y"] + y)
-    return {"paths": paths, "ellipses": ellipses, "heads": heads}
-
-
 def cluster(run: Run, motes: Motes, time: float) -> dict[str, dict[str, np.ndarray]]:
     """The head and the members of the newest cluster, and a spoke from it to each of them."""
     rows = run.clusters.until(time)[-1:]
@@ -177,9 +128,15 @@ def timeline(run: Run, bins: int = 240) -> dict[str, dict[str, np.ndarray]]:
     end = max(run.end_s, 1e-3)
     count, edges = np.histogram(run.frames.snapshot()["time"], bins=bins, range=(0.0, end))
     tracks = run.track.snapshot()
-    known = tracks[np.isfinite(tracks["error"])]
-    known = known[:: max(1, len(known) // 2000)]
+    tracks = tracks[np.isfinite(tracks["error"])]
+    lines: dict[str, list] = {"xs": [], "ys": [], "color": []}
+    for target in np.unique(tracks["target"]):
+        known = tracks[tracks["target"] == target]
+        known = known[:: max(1, len(known) // POINTS_MAX)]
+        lines["xs"].append(known["time"])
+        lines["ys"].append(known["error"])
+        lines["color"].append(colour(run, target))
     return {
         "traffic": {"time": (edges[1:] + edges[:-1]) / 2.0, "rate": count / (edges[1] - edges[0])},
-        "error": {"time": known["time"], "error": known["error"]},
+        "error": lines,
     }

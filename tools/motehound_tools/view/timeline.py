@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 
 from ..recording import Run
 from . import scene
-from .colours import BLUE, INK, TRACK, ink
+from .colours import BLUE, INK, ink
 
 
 class Timeline:
@@ -28,11 +28,11 @@ class Timeline:
         )
         # Two points from the start: Bokeh hangs drawing steps through none.
         self.traffic = ColumnDataSource({"time": [0.0, 1.0], "rate": [0.0, 0.0]}, name="traffic")
-        self.error = ColumnDataSource({"time": [], "error": []}, name="error")
+        self.error = ColumnDataSource({"xs": [], "ys": [], "color": []}, name="error")
         plot.varea_step("time", 0, "rate", step_mode="center", source=self.traffic, fill_color=BLUE, fill_alpha=0.35)
         plot.extra_y_ranges = {"error": Range1d(0.0, 1.0)}
         plot.add_layout(LinearAxis(y_range_name="error", axis_label="error, m"), "right")
-        plot.line("time", "error", source=self.error, y_range_name="error", line_color=TRACK, line_width=1.5)
+        plot.multi_line("xs", "ys", source=self.error, y_range_name="error", line_color="color", line_width=1.5)
         self.cursor = Span(location=0.0, dimension="height", line_color=INK, line_width=2)
         plot.add_layout(self.cursor)
         plot.on_event(Tap, lambda event: tapped(event.x))
@@ -41,7 +41,7 @@ class Timeline:
     def draw(self, run: Run, end: float) -> None:
         lines: dict[str, Any] = scene.timeline(run)
         self.traffic.data, self.error.data = lines["traffic"], lines["error"]
-        error = lines["error"]["error"]
+        error = np.concatenate([[], *lines["error"]["ys"]])
         self.figure.x_range.end = end
         self.figure.y_range.end = 1.1 * float(lines["traffic"]["rate"].max(initial=1.0))
         high = float(np.percentile(error, 99)) if len(error) else 1.0
