@@ -29,9 +29,48 @@ static double of_clusters(const struct simulation_counters *counters, uint32_t v
     return counters->clusters.present ? value : (double)NAN;
 }
 
+static double of_princes(const struct simulation_counters *counters, uint32_t value)
+{
+    return counters->protocol.princes.located > 0 ? value : (double)NAN;
+}
+
+static double per_cluster(const struct simulation_counters *counters, double value)
+{
+    return value / of_princes(counters, counters->protocol.princes.located);
+}
+
+static double sum_of(const struct simulation_counters *counters, const enum mh_message_kind *kinds, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += (double)counters->frames_sent[kinds[i]];
+    }
+    return sum;
+}
+
+/* What Han, Eqs. (2-14) to (2-16), count. */
+static double messages_of_locating(const struct simulation_counters *counters)
+{
+    static const enum mh_message_kind kinds[] = {MH_MESSAGE_LOCATE, MH_MESSAGE_SOUND, MH_MESSAGE_COMPETE,
+                                                 MH_MESSAGE_DETECTION, MH_MESSAGE_SUPPRESS};
+    return sum_of(counters, kinds, sizeof kinds / sizeof kinds[0]);
+}
+
+/* ... and what they do not. */
+static double messages_of_heads(const struct simulation_counters *counters)
+{
+    static const enum mh_message_kind kinds[] = {MH_MESSAGE_AWAKE, MH_MESSAGE_SUCCEED, MH_MESSAGE_FAIL};
+    return sum_of(counters, kinds, sizeof kinds / sizeof kinds[0]);
+}
+
 static double of_bounds(const struct simulation_counters *counters, double value)
 {
     return counters->bounds.apply ? value : (double)NAN;
+}
+
+static double of_sound(const struct simulation_counters *counters, double value)
+{
+    return counters->bounds.heard ? value : (double)NAN;
 }
 
 static double in_hindsight(const struct simulation_counters *counters, uint64_t value)

@@ -92,12 +92,32 @@
     X(UNCORRECTED, "uncorrected", c->protocol.fixed.uncorrected, "times that it did not, because it was too old")                                \
     X(SAMPLES_MISDIRECTED, "samples_misdirected", c->protocol.fixed.misdirected, "samples that came to who was head before")                       \
     X(HEADS_TAKEN_OVER, "heads_taken_over", c->protocol.fixed.taken_over, "fixed clusters: times that a member led because the head was silent") \
+    X(MESSAGES_PER_CLUSTER, "messages_per_cluster", per_cluster(c, messages_of_locating(c)), "prince: calls to localise, answers, and those of competitions, by fix") \
+    X(MESSAGES_PER_CLUSTER_ALL, "messages_per_cluster_all", per_cluster(c, messages_of_locating(c) + messages_of_heads(c)), "prince: the same and the announcements of heads, their hand-overs and reports of failure, by fix") \
+    X(DOUBLE_HEADS, "double_heads", per_cluster(c, c->protocol.princes.double_heads), "prince: share of the fixes after which two nodes were head for a while") \
+    X(TARGETS_FOUNDED, "targets_founded", of_princes(c, c->protocol.princes.founded), "prince: times that nodes took what they heard for a new target") \
+    X(FIXES, "fixes", of_princes(c, c->protocol.princes.located), "prince: fixes, each of which begins a cluster")               \
+    X(FIXES_PRINCE, "fixes_prince", of_princes(c, c->protocol.princes.princes), "of these by the node that the head had chosen")     \
+    X(FIXES_EXCEPTION, "fixes_exception", of_princes(c, c->protocol.princes.exceptions), "of these by an outer node, which the target had turned to") \
+    X(FIXES_REGENT, "fixes_regent", of_princes(c, c->protocol.princes.regents), "of these by another in the place of a silent prince") \
+    X(FIXES_COMPETITION, "fixes_competition", of_princes(c, c->protocol.princes.competitions), "of these by who won a competition, or detected the target first") \
+    X(FIXES_RETRIED, "fixes_retried", of_princes(c, c->protocol.princes.retries), "prince: calls to localise that were sent again")    \
+    X(FIXES_FAILED, "fixes_failed", of_princes(c, c->protocol.princes.fails), "prince: calls to localise that were given up")       \
+    X(WATCHDOGS, "watchdogs", of_princes(c, c->protocol.princes.watchdogs), "prince: times that a head missed its successor")        \
+    X(RELAYS, "relays", of_princes(c, c->protocol.princes.relays), "prince: reports of failure passed on")                           \
+    X(AWAKES_REPEATED, "awakes_repeated", of_princes(c, c->protocol.princes.repeated), "prince: announcements of a head repeated for who had not heard them") \
+    X(TARGETS_GIVEN_UP, "targets_given_up", of_princes(c, c->protocol.princes.lost), "prince: targets that their head, or who looked for them last, gave up") \
+    X(TARGETS_EVICTED, "targets_evicted", of_princes(c, c->protocol.princes.evicted), "prince: times that a node's table had no room for a target, and the first that was to leave it went") \
+    X(PRINCE_REFUSED, "prince_refused", of_princes(c, c->protocol.princes.refused), "prince: messages with absurd content, or of no time about now") \
+    X(GROUPS_MERGED, "groups_merged", of_princes(c, c->protocol.princes.merged), "prince: times that two targets went on as a group")   \
+    X(GROUPS_SPLIT, "groups_split", of_princes(c, c->protocol.princes.split), "prince: times that a group fell into parts")          \
     X(PCRB_M, "pcrb_m", of_bounds(c, c->bounds.pcrb_m), "ranged walk, or fixed clusters: the posterior Cramer-Rao bound of position_rmse_m")              \
     X(CCRB_M, "ccrb_m", of_bounds(c, c->bounds.ccrb_m), "fixed clusters: the bound along the run's own path") \
     X(LOCAL_CCRB_M_1, "local_ccrb_m_1", of_bounds(c, c->bounds.local_ccrb_m[0]), "the same of the first fixed cluster by itself") \
     X(LOCAL_CCRB_M_2, "local_ccrb_m_2", of_bounds(c, c->bounds.local_ccrb_m[1]), "of the second") \
     X(LOCAL_CCRB_M_3, "local_ccrb_m_3", of_bounds(c, c->bounds.local_ccrb_m[2]), "of the third") \
     X(LOCAL_CCRB_M_4, "local_ccrb_m_4", of_bounds(c, c->bounds.local_ccrb_m[3]), "of the fourth") \
+    X(FIX_CRLB_M, "fix_crlb_m", of_sound(c, c->bounds.fix_crlb_m), "sound: the Cramer-Rao bound of position_rmse_m for fixes from the samples of one instant, of all nodes that detect a target") \
     X(CLUSTERS_LEAST, "clusters_least", in_hindsight(c, c->bounds.hand_overs), "ranged target: the least hand-overs in hindsight, between heads that sense it at every instant") \
     X(REPORTS_LEAST, "reports_least", per_sample(c, in_hindsight(c, c->bounds.reports)), "ranged target: the least reports in hindsight that follow it within tracker.tolerance_m, by sampling instant") \
     X(CLOCK_ERROR_MEDIAN_MS, "clock_error_median_ms", c->clock_error_median_ms, "median of the error of the motes' network time, over motes and time")\

@@ -1,8 +1,10 @@
 #include "bounds/bounds.h"
 
+#include "bounds/fix_bound.h"
 #include "bounds/hindsight.h"
 #include "bounds/pcrb.h"
 #include "bounds/pcrb_fixed.h"
+#include "world/sound.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -73,6 +75,55 @@ static int of_fixed_clusters(const struct scenario *scenario, uint64_t seed, str
     return status;
 }
 
+/* What all nodes that detect a target at time_s tell of those that are there. */
+static struct fix_information heard_at(const struct sound *sound, const struct targets *targets,
+                                       const struct deployment *deployment, double time_s)
+{
+    struct heard_target heard[TARGETS_MAX];
+    struct fix_information information = {0};
+    for (size_t k = 0; k < targets->count; k++) {
+        const struct target_state state = targets_at(targets, k, time_s);
+        if (state.present) {
+            heard[information.targets++] =
+                (struct heard_target){state.at, targets->list[k].loudness * sound->range_m * sound->range_m};
+        }
+    }
+    for (uint32_t i = 0; i < deployment->count && information.targets > 0; i++) {
+        const struct point node = {deployment->nodes[i].x_m, deployment->nodes[i].y_m};
+        if (sound_reading(sound, targets, time_s, i, node) >= 1) {
+            fix_information_add(&information, heard, node, sound->source_noise, sound->background_noise);
+        }
+    }
+    return information;
+}
+
+static int of_sound(const struct scenario *scenario, uint64_t seed, struct bounds *bounds, char *error,
+                    size_t error_size)
+{
+    struct deployment deployment = {0};
+    struct targets targets = {0};
+    const struct sound sound = sound_of(scenario, seed);
+    double sum_m2 = 0;
+    size_t count = 0;
+    int status = deployment_make(&deployment, scenario, seed, error, error_size);
+    if (status == 0) {
+        status = targets_make(&targets, scenario, seed, error, error_size);
+    }
+    const double interval_s = scenario->sensor.interval_s;
+    const size_t last = (size_t)(targets.duration_s / interval_s + 1e-6);
+    for (size_t n = (size_t)scenario->metrics.skip_first; n <= last && status == 0; n++) {
+        const struct fix_information information = heard_at(&sound, &targets, &deployment, (double)n * interval_s);
+        const double variance_m2 = fix_bound_m2(&information);
+        sum_m2 += isnan(variance_m2) ? 0 : variance_m2;
+        count += isnan(variance_m2) ? 0 : 1;
+    }
+    bounds->heard = true;
+    bounds->fix_crlb_m = count > 0 ? sqrt(sum_m2 / (double)count) : (double)NAN;
+    targets_free(&targets);
+    deployment_free(&deployment);
+    return status;
+}
+
 int bounds_of(const struct scenario *scenario, uint64_t seed, struct bounds *bounds, char *error, size_t error_size)
 {
     const bool fixed = strcmp(scenario->network.protocol, "fixed") == 0;
@@ -82,6 +133,9 @@ int bounds_of(const struct scenario *scenario, uint64_t seed, struct bounds *bou
                         .follow = !fixed,
                         .ccrb_m = none,
                         .local_ccrb_m = {none, none, none, none}};
+    if (scenario->sensor.quantity == QUANTITY_SOUND) {
+        return of_sound(scenario, seed, bounds, error, error_size);
+    }
     if (!bounds->apply) {
         return 0;
     }

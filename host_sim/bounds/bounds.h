@@ -20,6 +20,10 @@ struct bounds {
     double ccrb_m, local_ccrb_m[BOUNDS_LOCAL];
     uint64_t hand_overs; /* between heads that sense the target at every sample (hindsight.h) */
     uint64_t reports;    /* that follow it within tracker.tolerance_m */
+    bool heard;          /* the sensors hear targets */
+    double
+        fix_crlb_m; /* then the bound of fix_bound.h from all nodes that detect a target, root mean square over the sampling instants at which
+                            they determine the places of all targets */
 };
 
 /* Returns 0, or -1 with one line in `error`: as deployment_make and trajectory_make. Cost: nodes x samples. */

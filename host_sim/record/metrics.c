@@ -1,12 +1,12 @@
 #include "record/metrics.h"
 
 #include "motehound/matrix.h"
+#include "record/followed.h"
+#include "record/grouping.h"
 #include "record/search.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { TARGETS = 256 };
 
 #define NAME(id, name, meaning) name,
 #define NAME_OF_TOTAL(id, name, value, meaning) name,
@@ -20,6 +20,29 @@ const char *const metric_meanings[METRIC_COUNT] = {METRICS_OF_ERRORS(MEANING) ME
 static double error_of(const motehound_track_t *track)
 {
     return hypot(track->x_m - track->true_x_m, track->y_m - track->true_y_m);
+}
+
+/* Something of each track, by its identifier; of those after so many the last one's. */
+enum { TALLY_MAX = 32 };
+struct tally {
+    int32_t targets[TALLY_MAX];
+    size_t count;
+    int64_t values[TALLY_MAX];
+};
+
+static int64_t *tally_of(struct tally *tally, int32_t target)
+{
+    size_t i = 0;
+    while (i < tally->count && tally->targets[i] != target) {
+        i++;
+    }
+    if (i == TALLY_MAX) {
+        return &tally->values[TALLY_MAX - 1];
+    }
+    if (i == tally->count) {
+        tally->targets[tally->count++] = target;
+    }
+    return &tally->values[i];
 }
 
 /* e' P^-1 e by elimination; P is packed as motehound/matrix.h says, and overwritten, as e is. NaN unless P is positive definite. */
@@ -134,6 +157,7 @@ static int add_track(struct errors *errors, const motehound_track_t *track)
     const double raw = hypot(track->raw_x_m - track->true_x_m, track->raw_y_m - track->true_y_m);
     const double at_arrival = hypot(track->x_m - track->arrival_x_m, track->y_m - track->arrival_y_m);
     const bool sound = samples_add(&errors->position, error_of(track)) == 0 &&
+                       samples_add(track->members > 1 ? &errors->group : &errors->single, error_of(track)) == 0 &&
                        samples_add(&errors->raw_position, raw) == 0 &&
                        (!track->arrival_known || samples_add(&errors->position_at_arrival, at_arrival) == 0) &&
                        add(&errors->nees, nees) == 0 && add(&errors->claimed, claim_of(track)) == 0;
@@ -159,7 +183,7 @@ bool metric_is_over_runs(enum metric metric)
 
 int errors_of(const struct recorder *recorder, const struct scenario *scenario, struct errors *errors)
 {
-    int64_t seen[TARGETS] = {0};
+    struct tally seen = {0};
     const size_t count = recorder->track_count;
     if (count > 0 && is_search(scenario, &recorder->tracks[count - 1])) {
         const struct search search = search_of(recorder, scenario);
@@ -167,7 +191,7 @@ int errors_of(const struct recorder *recorder, const struct scenario *scenario, 
     }
     for (size_t i = 0; i < count; i++) {
         const motehound_track_t *track = &recorder->tracks[i];
-        const bool skipped = seen[(uint8_t)track->target]++ < scenario->metrics.skip_first;
+        const bool skipped = (*tally_of(&seen, track->target))++ < scenario->metrics.skip_first;
         if (!skipped && track->true_known && add_track(errors, track) != 0) {
             return -1;
         }
@@ -177,13 +201,14 @@ int errors_of(const struct recorder *recorder, const struct scenario *scenario, 
 
 int errors_append(struct errors *errors, const struct errors *more)
 {
-    bool sound = samples_append(&errors->position, &more->position) == 0 &&
-                 samples_append(&errors->raw_position, &more->raw_position) == 0 &&
-                 samples_append(&errors->position_at_arrival, &more->position_at_arrival) == 0 &&
-                 samples_append(&errors->found, &more->found) == 0 && samples_append(&errors->rate, &more->rate) == 0 &&
-                 samples_append(&errors->efficiency, &more->efficiency) == 0 &&
-                 samples_append(&errors->nees, &more->nees) == 0 &&
-                 samples_append(&errors->claimed, &more->claimed) == 0;
+    bool sound =
+        samples_append(&errors->position, &more->position) == 0 &&
+        samples_append(&errors->single, &more->single) == 0 && samples_append(&errors->group, &more->group) == 0 &&
+        samples_append(&errors->raw_position, &more->raw_position) == 0 &&
+        samples_append(&errors->position_at_arrival, &more->position_at_arrival) == 0 &&
+        samples_append(&errors->found, &more->found) == 0 && samples_append(&errors->rate, &more->rate) == 0 &&
+        samples_append(&errors->efficiency, &more->efficiency) == 0 &&
+        samples_append(&errors->nees, &more->nees) == 0 && samples_append(&errors->claimed, &more->claimed) == 0;
     for (int c = 0; c < LOCAL_CLUSTERS; c++) {
         sound = sound && samples_append(&errors->local_position[c], &more->local_position[c]) == 0 &&
                 samples_append(&errors->local_nees[c], &more->local_nees[c]) == 0;
@@ -198,6 +223,8 @@ int errors_append(struct errors *errors, const struct errors *more)
 void errors_free(struct errors *errors)
 {
     samples_free(&errors->position);
+    samples_free(&errors->single);
+    samples_free(&errors->group);
     samples_free(&errors->raw_position);
     samples_free(&errors->position_at_arrival);
     samples_free(&errors->found);
@@ -229,6 +256,8 @@ static void metrics_over_instants(const struct errors *errors, double *sum_m, do
 void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT])
 {
     values[METRIC_POSITION_RMSE_M] = samples_rms(&errors->position);
+    values[METRIC_POSITION_ERROR_M] = samples_mean(&errors->single);
+    values[METRIC_GROUP_CENTROID_ERROR_M] = samples_mean(&errors->group);
     values[METRIC_POSITION_MEDIAN_M] = samples_quantile(&errors->position, 0.5);
     values[METRIC_POSITION_P95_M] = samples_quantile(&errors->position, 0.95);
     values[METRIC_RAW_POSITION_RMSE_M] = samples_rms(&errors->raw_position);
@@ -249,15 +278,15 @@ void metrics_of_errors(struct errors *errors, double values[METRIC_ERRORS_COUNT]
 
 static bool lost(const struct recorder *recorder, const struct scenario *scenario)
 {
-    int64_t seen[TARGETS] = {0}, wrong[TARGETS] = {0};
+    struct tally seen = {0}, wrong = {0};
     for (size_t i = 0; i < recorder->track_count; i++) {
         const motehound_track_t *track = &recorder->tracks[i];
-        const int target = (uint8_t)track->target;
-        if (seen[target]++ < scenario->metrics.skip_first || !track->true_known) {
+        if ((*tally_of(&seen, track->target))++ < scenario->metrics.skip_first || !track->true_known) {
             continue;
         }
-        wrong[target] = error_of(track) > scenario->metrics.lost_m ? wrong[target] + 1 : 0;
-        if (wrong[target] >= scenario->metrics.lost_samples) {
+        int64_t *successive = tally_of(&wrong, track->target);
+        *successive = error_of(track) > scenario->metrics.lost_m ? *successive + 1 : 0;
+        if (*successive >= scenario->metrics.lost_samples) {
             return true;
         }
     }
@@ -272,19 +301,19 @@ struct coverage {
 static struct coverage coverage_of(const struct recorder *recorder)
 {
     struct coverage coverage = {0, 0, 0};
-    size_t beyond[TARGETS] = {0};
+    struct tally beyond = {0};
     for (size_t i = 0; i < recorder->track_count; i++) {
         const motehound_track_t *track = &recorder->tracks[i];
         const double sd_m = sqrt((track->cov_xx_m2 + track->cov_yy_m2) / 2);
-        size_t *succession = &beyond[(uint8_t)track->target];
         if (!track->true_known || !(sd_m > 0)) {
             continue;
         }
         const bool covered = error_of(track) <= 3 * sd_m;
+        int64_t *succession = tally_of(&beyond, track->target);
         *succession = covered ? 0 : *succession + 1;
         coverage.positions++;
         coverage.covered += covered;
-        coverage.longest = *succession > coverage.longest ? *succession : coverage.longest;
+        coverage.longest = (size_t)*succession > coverage.longest ? (size_t)*succession : coverage.longest;
     }
     return coverage;
 }
@@ -336,6 +365,28 @@ static void metrics_of_search(const struct recorder *recorder, const struct scen
     values[METRIC_RATE_CRLB] = search.rate_crlb;
 }
 
+/* Of targets that are heard, and stay where they are for longer than an instant. */
+static void metrics_of_followed(const struct recorder *recorder, const struct scenario *scenario,
+                                double values[METRIC_COUNT])
+{
+    const struct followed followed = followed_of(recorder, scenario);
+    const struct grouping grouping = grouping_of(recorder, scenario);
+    const bool is_lost = values[METRIC_TRACK_LOST] > 0 || followed.lost;
+    values[METRIC_TRACK_LOST] = is_lost;
+    values[METRIC_SUCCESS] = !is_lost && followed.swaps == 0 && !followed.coalesced;
+    values[METRIC_IDENTITY_SWAPS] = followed.swaps;
+    values[METRIC_SWAPS_CLAIMED] = followed.swaps_claimed;
+    values[METRIC_UNRESOLVED] = followed.unresolved;
+    values[METRIC_LONGEST_GAP_M] = followed.longest_gap_m;
+    values[METRIC_MERGE_DELAY_S] = grouping.merge_delay_s;
+    values[METRIC_SPLIT_DELAY_S] = grouping.split_delay_s;
+    values[METRIC_EXTENT_BIAS_M] = grouping.extent_bias_m;
+    values[METRIC_MODE_CHANGES_PER_MIN] = grouping.mode_changes_pmin;
+    values[METRIC_SPURIOUS_SPLITS_PER_MIN] = grouping.spurious_splits_pmin;
+    values[METRIC_COUNT_RIGHT] = grouping.count_right;
+    values[METRIC_APART_AT_END] = grouping.apart_at_end;
+}
+
 /* Of the last estimate that there is a truth for. */
 static double rate_ratio_of(const struct recorder *recorder)
 {
@@ -379,6 +430,8 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
         ranged ? error_in_ranges(recorder->sinks, recorder->sink_count, recorder, scenario) : none;
     const double pcrb_m = recorder->totals[TOTAL_PCRB_M];
     values[METRIC_RMSE_OVER_PCRB] = pcrb_m > 0 ? values[METRIC_POSITION_RMSE_M] / pcrb_m : none;
+    const double crlb_m = recorder->totals[TOTAL_FIX_CRLB_M];
+    values[METRIC_RMSE_OVER_CRLB] = crlb_m > 0 ? values[METRIC_POSITION_RMSE_M] / crlb_m : none;
     values[METRIC_RATE_RATIO] = rate_ratio_of(recorder);
     values[METRIC_LONGEST_GAP_S] = ranged ? longest_gap_s(recorder, scenario->sensor.range_m) : none;
     for (int i = METRIC_SUCCESS_50M; i <= METRIC_RATE_CRLB; i++) {
@@ -386,6 +439,12 @@ void metrics_of_run(const struct recorder *recorder, const struct scenario *scen
     }
     if (truth && scenario->sensor.quantity == QUANTITY_GAS) {
         metrics_of_search(recorder, scenario, values);
+    }
+    for (int i = METRIC_SUCCESS; i <= METRIC_APART_AT_END; i++) {
+        values[i] = none;
+    }
+    if (truth && scenario->sensor.quantity == QUANTITY_SOUND && scenario->source.path != PATH_SCATTERED) {
+        metrics_of_followed(recorder, scenario, values);
     }
     memcpy(&values[METRIC_FIRST_TOTAL], recorder->totals, sizeof recorder->totals);
 }

@@ -11,8 +11,9 @@ enum { LOCAL_CLUSTERS = 4 }; /* fixed clusters that have metrics of their own */
 /* The errors of the estimates of one run, or of many together, at which the source was present; the first
  * metrics.skip_first estimates of each target are left out; of a search (sensor.quantity gas) only the last one counts. */
 struct errors {
-    struct samples position;     /* m, at the sampling instant */
-    struct samples raw_position; /* m, before filtering */
+    struct samples position;      /* m, at the sampling instant */
+    struct samples single, group; /* the same of single targets, and of the centroids of groups */
+    struct samples raw_position;  /* m, before filtering */
     struct samples
         position_at_arrival; /* m, against the truth at the time that the tracker says the position belongs to */
     struct samples found;    /* of a search (sensor.quantity gas) the same, m; so below */
@@ -32,6 +33,8 @@ struct errors {
 /* clang-format off */
 #define METRICS_OF_ERRORS(X) /* what struct errors alone gives */                                                           \
     X(POSITION_RMSE_M, "position_rmse_m", "root mean square error of the position")                                         \
+    X(POSITION_ERROR_M, "position_error_m", "mean error of the position of single targets")                                 \
+    X(GROUP_CENTROID_ERROR_M, "group_centroid_error_m", "sound: mean error of the centroid of groups")                      \
     X(POSITION_MEDIAN_M, "position_median_m", "median error of the position")                                               \
     X(POSITION_P95_M, "position_p95_m", "95th percentile of the error")                                                     \
     X(RAW_POSITION_RMSE_M, "raw_position_rmse_m", "root mean square error before the filter")                               \
@@ -55,7 +58,7 @@ struct errors {
 
 #define METRICS_OF_TRACK(X)                                                                                                 \
     X(TRACKED_SHARE, "tracked_share", "share of the sampling instants with the source present that gave a position")        \
-    X(TRACK_LOST, "track_lost", "1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates, else 0") \
+    X(TRACK_LOST, "track_lost", "1 if the error exceeded metrics.lost_m in metrics.lost_samples successive estimates, else 0; prince: or if a target had no fix on the last 150 m of its way") \
     X(COVERED_SHARE, "covered_share", "share of the positions whose error was at most three times the standard deviation that they state") \
     X(OVERCONFIDENT_SAMPLES, "overconfident_samples", "longest succession of positions whose error was larger than that")   \
     X(ESTIMATES, "estimates", "positions that the head reported")                                                           \
@@ -72,6 +75,19 @@ struct errors {
     X(CRLB_M, "crlb_m", "gas: the Cramer-Rao bound of the position from the samples that were heard")                      \
     X(RATE_CRLB, "rate_crlb", "gas: the same of the rate of release, as a share of it")                                    \
     X(LONGEST_GAP_S, "longest_gap_s", "ranged target: longest time without a head's position within sensor.range_m of the target") \
+    X(SUCCESS, "success", "sound: 1 if no target was lost, or taken for another in the end, and no two tracks became one, else 0") \
+    X(IDENTITY_SWAPS, "identity_swaps", "sound: exchanges of identifiers that would set right the tracks that are with each other's targets in the end") \
+    X(SWAPS_CLAIMED, "swaps_claimed", "sound: of these between tracks that do not say that they cannot tell who is who")     \
+    X(UNRESOLVED, "unresolved", "sound: 1 if a target's track says so in the end, else 0")                                  \
+    X(LONGEST_GAP_M, "longest_gap_m", "sound: the largest distance that a target travels between two fixes, or after the last") \
+    X(MERGE_DELAY_S, "merge_delay_s", "groups: mean time from when two targets come together (a chain of steps within 20 m) until they are in one group") \
+    X(SPLIT_DELAY_S, "split_delay_s", "groups: the same from when they come apart (30 m) until they are not")               \
+    X(EXTENT_BIAS_M, "extent_bias_m", "groups: mean of the extent, less the root mean square distance of the targets from their centroid") \
+    X(MODE_CHANGES_PER_MIN, "mode_changes_per_min", "sound: instants a minute at which a target becomes single, one of several or part of a group") \
+    X(SPURIOUS_SPLITS_PER_MIN, "spurious_splits_per_min", "groups: instants a minute at which one loses targets that are together, of the time that targets are") \
+    X(COUNT_RIGHT, "count_right", "sound, ideal network: share of the sampling instants at which as many targets are followed as there are, those in groups with them") \
+    X(APART_AT_END, "apart_at_end", "sound: 1 if every target is followed by itself in the end, else 0")                    \
+    X(RMSE_OVER_CRLB, "rmse_over_crlb", "sound: position_rmse_m over fix_crlb_m")                                           \
     X(RATE_RATIO, "rate_ratio", "leak: the last estimate of its rate of release over the true one")
 /* clang-format on */
 

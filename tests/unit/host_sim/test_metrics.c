@@ -58,7 +58,7 @@ static void statistics_have_their_closed_forms(void)
 static void tell(const struct observer *observer, double time_s, bool present, float x, float y, float variance,
                  uint8_t target)
 {
-    const struct truth truth = {.time_s = time_s, .x_m = time_s, .present = present};
+    const struct truth truth = {.time_s = time_s, .x_m = time_s, .present = present, .target = target};
     const struct truth arrival = {.time_s = time_s - 0.5, .x_m = time_s - 0.5, .present = present && time_s >= 0.5};
     const struct mh_estimate estimate = {.origin = {10000, -20000, 0},
                                          .position = {x - 10, y + 20},
