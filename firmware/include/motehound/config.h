@@ -126,8 +126,8 @@
 #define MH_SOURCES_MAX (MH_GROUP_MAX + 1)
 #endif
 
-/* Newly found sources are counted on so many cells a side of a square, 4 bytes of stack each, from so many nodes, 28 bytes each. Fewer cells than 16
- * count three sources for two more often. */
+/* Newly found sources are counted on so many cells a side of a square, 4 bytes of stack each, from so many nodes, 16 bytes each. With 8 cells one to four times as many
+ * counts are wrong as with 16. */
 #ifndef MH_COUNT_SIDE
 #ifdef __AVR__
 #define MH_COUNT_SIDE 8

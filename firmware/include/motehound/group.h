@@ -35,7 +35,7 @@ struct mh_group_config {
     mh_real merge_m,
         split_m; /* 1 to 60, merge_m <= split_m; nominal 20 and 30, by weights 50 and 75 with split_m up to 120 */
     uint8_t merge_epochs; /* 1 to 15, nominal 2 */
-    uint8_t split_epochs; /* 1 to 15, nominal 3 */
+    uint8_t split_epochs; /* 1 to 15, nominal 3; 1 leaves the parts without velocities of their own */
     mh_real
         member_sd_m;  /* how far a member may be from where it was, relative to the centroid: 0.1 to 100, nominal 12 */
     mh_real fix_sd_m; /* of a centroid found, 0.1 to 100, nominal 2.5 */
@@ -104,10 +104,17 @@ mh_real mh_group_gap(const struct mh_group *a, struct mh_vec2 centroid_a, const 
 enum mh_status mh_group_take(struct mh_group *group, const struct mh_group_config *config, mh_real seconds,
                              const struct mh_vec2 *places, struct mh_vec2 *centroid, bool *split);
 
-/* After that, or after a single target's step: the track that is nearest, `near` with `near_count` members, is `gap` away (mh_group_gap); nobody is near: infinite.
- * Returns whether this one is to take it in (MH_ESTIMATE_MERGE). While a group counts towards a split it counts no merges. */
-bool mh_group_approach(struct mh_group *group, const struct mh_group_config *config, uint32_t near, uint8_t near_count,
-                       mh_real gap);
+/* Another track: who it is, how many targets it is, and how far off (mh_group_gap). */
+struct mh_group_neighbour {
+    uint32_t target;
+    uint8_t count;
+    mh_real gap;
+};
+
+/* After that, or after a single target's step, with all tracks around: -> whether this one is to take in `group->near` (MH_ESTIMATE_MERGE). Whom it has come near
+ * to it goes on with while that is near, else with the nearest. A group that counts towards a split counts no merges, and none that is too large for a group. */
+bool mh_group_approach(struct mh_group *group, const struct mh_group_config *config,
+                       const struct mh_group_neighbour *neighbours, size_t count);
 
 /* `group` and `other` become one -> `group`, its centroid and mean velocity, both weighted with the members. Errors, with nothing changed: MH_ERR_CAPACITY,
  * MH_ERR_ARGUMENT (they have a target in common), MH_ERR_NOT_FINITE. */
