@@ -126,8 +126,8 @@
 #define MH_SOURCES_MAX (MH_GROUP_MAX + 1)
 #endif
 
-/* Newly found sources are counted on so many cells a side of a square, 4 bytes of stack each, from so many nodes, 16 bytes each. With 8 cells one to four times as many
- * counts are wrong as with 16. */
+/* Newly found sources are counted on so many cells a side of a square, 4 bytes of stack each, from so many nodes, 4 bytes each. With 8 cells and
+ * 12 nodes 2 to 4 % of the counts of two and three sources 10 m from their centroid are wrong, with 16 and 32 below 1 %. */
 #ifndef MH_COUNT_SIDE
 #ifdef __AVR__
 #define MH_COUNT_SIDE 8

@@ -11,28 +11,19 @@
  * hears nothing need not be known. Ten updates.
  *
  * With five to six nodes within R the number is right in 98 % and more of two and of three sources on a circle of up to 0.4 R, and they are found to 0.07 R of their centroid; that there is only one is
- * found in 88 %, and a fit of one source tells it better. Work: some 40 MH_COUNT_SIDE^2 divisions a node; stack 4 MH_COUNT_SIDE^2 + 16 MH_COUNT_NODES_MAX bytes and registers. */
+ * found in 88 %, and a fit of one source tells it better. Work: some 40 MH_COUNT_SIDE^2 divisions a node; stack 4 (MH_COUNT_SIDE^2 + MH_COUNT_NODES_MAX) bytes and registers. */
 #ifndef MOTEHOUND_SOURCE_COUNT_H
 #define MOTEHOUND_SOURCE_COUNT_H
 
 #include "motehound/config.h"
-#include "motehound/geometry.h"
-#include "motehound/status.h"
-
-#include <stddef.h>
+#include "motehound/sound_fix.h"
 
 #define MH_COUNT_AREA_M 120.0f
 
-/* What a node measured: where, and the energy in units of the detection threshold. */
-struct mh_heard_sound {
-    struct mh_vec2 place;
-    mh_real energy;
-};
-
-/* `loudness`: energy of one source at 1 m, R^2, 1e-3 to 1e9 m2. Of the nodes the MH_COUNT_NODES_MAX loudest are used; those of an energy below 1 only say where nothing is.
- * -> places[0 .. *sources), at least one and at most `most`, 1 to MH_SOURCES_MAX; no two are the same. Errors: MH_ERR_ARGUMENT, MH_ERR_NOT_FINITE, MH_ERR_TOO_FEW (no node has an
- * energy of 1), MH_ERR_SINGULAR (no cell is left). */
-enum mh_status mh_source_count(mh_real loudness, const struct mh_heard_sound *nodes, size_t count, uint8_t most,
+/* Of the nodes the first MH_COUNT_NODES_MAX are used, which should be the strongest; those of an energy below 1 only say where nothing is.
+ * -> places[0 .. *sources), at least one and at most `most`, 1 to MH_SOURCES_MAX; no two are the same. Errors: MH_ERR_ARGUMENT (most, or sound not valid), MH_ERR_NOT_FINITE,
+ * MH_ERR_TOO_FEW (no node has an energy of 1), MH_ERR_SINGULAR (no cell is left). */
+enum mh_status mh_source_count(const struct mh_sound *sound, const struct mh_heard *heard, size_t count, uint8_t most,
                                struct mh_vec2 *places, uint8_t *sources);
 
 #endif

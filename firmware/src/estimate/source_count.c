@@ -14,11 +14,11 @@
 
 /* The nodes, the grid and the intensity on it. */
 struct intensity {
-    mh_real loudness;
-    struct mh_vec2 corner; /* middle of the first cell */
-    struct mh_heard_sound nodes[MH_COUNT_NODES_MAX];
+    const struct mh_sound *sound;
+    const struct mh_heard *nodes;
     uint8_t count;
-    mh_real cells[CELLS]; /* row by row */
+    struct mh_vec2 corner; /* middle of the first cell */
+    mh_real cells[CELLS];  /* row by row */
 };
 
 static struct mh_vec2 cell_place(const struct intensity *intensity, int cell)
@@ -32,38 +32,16 @@ static mh_real distance_square(struct mh_vec2 a, struct mh_vec2 b)
     return mh_squared(a.x - b.x) + mh_squared(a.y - b.y);
 }
 
-/* The loudest nodes, in any order. */
-static enum mh_status take_nodes(struct intensity *intensity, const struct mh_heard_sound *nodes, size_t count)
-{
-    intensity->count = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (!mh_finite(nodes[i].energy) || !(mh_abs(nodes[i].place.x) <= 1e6f && mh_abs(nodes[i].place.y) <= 1e6f)) {
-            return MH_ERR_NOT_FINITE;
-        }
-        if (intensity->count < MH_COUNT_NODES_MAX) {
-            intensity->nodes[intensity->count++] = nodes[i];
-            continue;
-        }
-        uint8_t quietest = 0;
-        for (uint8_t k = 1; k < MH_COUNT_NODES_MAX; k++) {
-            if (intensity->nodes[k].energy < intensity->nodes[quietest].energy) {
-                quietest = k;
-            }
-        }
-        if (nodes[i].energy > intensity->nodes[quietest].energy) {
-            intensity->nodes[quietest] = nodes[i];
-        }
-    }
-    return MH_OK;
-}
-
 /* The grid about the nodes that hear something. */
 static enum mh_status place_grid(struct intensity *intensity)
 {
     struct mh_vec2 sum = {0, 0};
     mh_real weights = 0;
     for (uint8_t i = 0; i < intensity->count; i++) {
-        const struct mh_heard_sound *node = &intensity->nodes[i];
+        const struct mh_heard *node = &intensity->nodes[i];
+        if (!mh_finite(node->energy) || !(mh_abs(node->place.x) <= 1e6f && mh_abs(node->place.y) <= 1e6f)) {
+            return MH_ERR_NOT_FINITE;
+        }
         const mh_real weight = node->energy < HEARD ? 0.0f : mh_min(node->energy, LOUD);
         sum.x += weight * node->place.x;
         sum.y += weight * node->place.y;
@@ -83,10 +61,10 @@ static int hearers(const struct intensity *intensity, struct mh_vec2 place)
     int near = 0;
     for (uint8_t i = 0; i < intensity->count; i++) {
         const mh_real square = distance_square(place, intensity->nodes[i].place), energy = intensity->nodes[i].energy;
-        if (square < CLEARANCE * CLEARANCE * intensity->loudness / mh_max(energy, HEARD)) {
+        if (square < CLEARANCE * CLEARANCE * intensity->sound->loudness_m2 / mh_max(energy, HEARD)) {
             return -1;
         }
-        near += energy >= HEARD && square <= intensity->loudness;
+        near += energy >= HEARD && square <= intensity->sound->loudness_m2;
     }
     return near;
 }
@@ -118,7 +96,7 @@ static mh_real gain(const struct intensity *intensity, struct mh_vec2 place, uin
     if (intensity->nodes[i].energy < HEARD) {
         return 0.0f;
     }
-    return intensity->loudness / mh_max(NEAREST_SQUARE, distance_square(place, intensity->nodes[i].place));
+    return mh_sound_energy(intensity->sound, mh_max(NEAREST_SQUARE, distance_square(place, intensity->nodes[i].place)));
 }
 
 /* x_g <- x_g sum_i(a_ig / e_i) / sum_i(a_ig / y_i) for all cells from the same e. */
@@ -204,17 +182,15 @@ static struct mh_vec2 remove_source(struct intensity *intensity, int from, mh_re
     return (struct mh_vec2){sum.x / taken, sum.y / taken};
 }
 
-enum mh_status mh_source_count(mh_real loudness, const struct mh_heard_sound *nodes, size_t count, uint8_t most,
+enum mh_status mh_source_count(const struct mh_sound *sound, const struct mh_heard *heard, size_t count, uint8_t most,
                                struct mh_vec2 *places, uint8_t *sources)
 {
-    if (!mh_within(loudness, 1e-3f, 1e9f) || most < 1 || most > MH_SOURCES_MAX) {
+    if (!mh_sound_valid(sound) || most < 1 || most > MH_SOURCES_MAX) {
         return MH_ERR_ARGUMENT;
     }
-    struct intensity intensity = {.loudness = loudness};
-    enum mh_status status = take_nodes(&intensity, nodes, count);
-    if (status == MH_OK) {
-        status = place_grid(&intensity);
-    }
+    struct intensity intensity = {
+        .sound = sound, .nodes = heard, .count = (uint8_t)(count < MH_COUNT_NODES_MAX ? count : MH_COUNT_NODES_MAX)};
+    enum mh_status status = place_grid(&intensity);
     if (status == MH_OK) {
         status = begin(&intensity);
     }

@@ -78,8 +78,7 @@ static void joins_that_cannot_be(void)
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_group_join(&group, &centroid, &velocity, &same, at(0, 0), at(0, 0)));
     mh_group_single(&same, 7);
     TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, mh_group_join(&group, &centroid, &velocity, &same, at(NAN, 0), at(0, 0)));
-    TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE,
-                      mh_group_join(&group, &centroid, &velocity, &same, at(0, 0), at(0, INFINITY)));
+    TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, mh_group_join(&group, &centroid, &velocity, &same, at(0, 0), at(0, INFINITY)));
     for (uint8_t i = 0; i < MH_GROUP_MAX; i++) {
         full.targets[i].target = 100u + i;
     }
@@ -172,8 +171,7 @@ static void part_two(mh_real seconds, struct mh_vec2 left, struct mh_vec2 right,
     }
     TEST_ASSERT_TRUE(split);
     for (uint8_t k = 0; k < 2; k++) {
-        TEST_ASSERT_EQUAL(MH_OK,
-                          mh_group_part(&group, &config, at(50, 60), at(0, 10), k, &part, &centroid, &velocity));
+        TEST_ASSERT_EQUAL(MH_OK, mh_group_part(&group, &config, at(50, 60), at(0, 10), k, &part, &centroid, &velocity));
         TEST_ASSERT_EQUAL(1, part.count);
         TEST_ASSERT_FLOAT_WITHIN(1e-4f, centroid.x < 50 ? -4 : 4, velocity.x);
         TEST_ASSERT_FLOAT_WITHIN(1e-4f, 10, velocity.y);
@@ -263,7 +261,8 @@ static void four_part_as_the_nearest_velocities_say(void)
         }
         TEST_ASSERT_TRUE(split);
         for (uint8_t k = 0; k < 4; k++) {
-            TEST_ASSERT_EQUAL(MH_OK, mh_group_part(&group, &config, at(0, 0), at(0, 0), k, &part, &centroid, &velocity));
+            TEST_ASSERT_EQUAL(MH_OK,
+                              mh_group_part(&group, &config, at(0, 0), at(0, 0), k, &part, &centroid, &velocity));
             const uint8_t *went = order[o];
             const uint8_t i = (uint8_t)(part.targets[0].target - 10u);
             TEST_ASSERT_FLOAT_WITHIN(1e-4f, 5 * way[went[i]][0], velocity.x);
@@ -352,8 +351,8 @@ static void saved_bytes(void)
     saved_and_back(&group, 6);
 
     join_two(&group, 9, at(10, 2), at(10, -3));
-    static const uint8_t expected[] = {2, 0, 900 >> 8, 900 & 0xff, 40, 0xf4, 0, 0, 18, 0,
-                                       0, 0, 0, 5, 40, 8, 0, 0, 0xee, 0};
+    static const uint8_t expected[] = {2, 0, 900 >> 8, 900 & 0xff, 40, 0xf4, 0, 0, 18,   0,
+                                       0, 0, 0,        5,          40, 8,    0, 0, 0xee, 0};
     uint8_t bytes[MH_GROUP_BYTES(2)];
     TEST_ASSERT_EQUAL(sizeof expected, mh_group_write(&group, bytes));
     TEST_ASSERT_EQUAL_MEMORY(expected, bytes, sizeof expected);
@@ -378,8 +377,11 @@ static void corrupt_bytes(void)
     const size_t length = mh_group_write(&group, bytes);
     static const struct {
         uint8_t at, value;
-    } wrong[] = {{0, 0},     {0, MH_GROUP_MAX + 1}, {0, 1}, {1, 0x11}, {13, 3}, /* the targets do not ascend */
-                 {4, 0x80},  {18, 0x80},            {20, 0}, {20, 2} /* parts that cannot be */};
+    } wrong[] = {{0, 0},    {0, MH_GROUP_MAX + 1},
+                 {0, 1},    {1, 0x11},
+                 {13, 3}, /* the targets do not ascend */
+                 {4, 0x80}, {18, 0x80},
+                 {20, 0},   {20, 2} /* parts that cannot be */};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         uint8_t changed[sizeof bytes];
         memcpy(changed, bytes, sizeof bytes);
