@@ -9,7 +9,7 @@ void setUp(void) {}
 void tearDown(void) {}
 
 #define COLUMNS 7
-#define SPACING 17.0f
+#define SPACING 29.4f
 
 static const struct mh_sound sound = {1600, 0.19f, 0.05f};
 static struct mh_heard nodes[COLUMNS * COLUMNS];
