@@ -23,8 +23,9 @@ struct intensity {
 
 static struct mh_vec2 cell_place(const struct intensity *intensity, int cell)
 {
-    return (struct mh_vec2){intensity->corner.x + (mh_real)(cell % SIDE) * CELL_M,
-                            intensity->corner.y + (mh_real)(cell / SIDE) * CELL_M};
+    const int column = cell % SIDE, row = cell / SIDE;
+    return (struct mh_vec2){intensity->corner.x + (mh_real)column * CELL_M,
+                            intensity->corner.y + (mh_real)row * CELL_M};
 }
 
 static mh_real distance_square(struct mh_vec2 a, struct mh_vec2 b)

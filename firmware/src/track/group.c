@@ -366,7 +366,7 @@ enum mh_status mh_group_part(const struct mh_group *group, const struct mh_group
     }
 
     /* The best allotment, then whether one that is nearly as good gives this part other targets. */
-    uint8_t allotment[MH_GROUP_MAX], best[MH_GROUP_MAX] = {0};
+    uint8_t allotment[MH_GROUP_MAX] = {0}, best[MH_GROUP_MAX] = {0};
     mh_real least = INFINITY;
     first_allotment(sizes, parts, allotment);
     do {
@@ -454,7 +454,14 @@ static int8_t get_i8(const uint8_t **at)
 /* Bytes of a group with these first two. */
 static size_t size_of(uint8_t count, uint8_t splits, uint8_t merges)
 {
-    return (size_t)(2 + (merges > 0 ? 4 : 0) + (count < 2 ? 0 : 10 * count - 2) + (splits > 0 ? 3 + 2 * count : 0));
+    size_t size = merges > 0 ? 6 : 2;
+    if (count > 1) {
+        size += 10u * count - 2u;
+    }
+    if (splits > 0) {
+        size += 2u * count + 3u;
+    }
+    return size;
 }
 
 enum mh_status mh_group_read(struct mh_group *group, uint32_t target, const uint8_t *bytes, size_t length,
