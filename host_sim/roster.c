@@ -75,8 +75,8 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         return -1;
     }
     if (scenario->source.path != PATH_NONE && kit->tracker.measures != scenario->sensor.quantity) {
-        static const char *const many[] = {"concentrations", "ranges", "gas"}, *const one[] = {"concentration", "range",
-                                                                                               "gas"};
+        static const char *const many[] = {"concentrations", "ranges", "gas", "sound"};
+        static const char *const one[] = {"concentration", "range", "gas", "sound"};
         snprintf(error, error_size, "tracker.name: `%s` works on %s, sensor.quantity is %s", scenario->tracker.name,
                  many[kit->tracker.measures], one[scenario->sensor.quantity]);
         return -1;

@@ -4,8 +4,11 @@
 #include "network.h"
 #include "world/field.h"
 #include "world/gas.h"
+#include "world/identify.h"
 #include "world/ranging.h"
 #include "world/sensor.h"
+#include "world/sound.h"
+#include "world/targets.h"
 #include "world/traffic.h"
 
 #include <math.h>
@@ -19,10 +22,13 @@ struct run {
     const struct observer *observer;
     struct roster roster;
     struct traffic traffic; /* where there is no source; else the next eight */
-    struct field field;
+    struct targets targets;
+    struct identify identify;
     enum quantity quantity; /* that the sensors measure */
+    struct field field;     /* of a concentration */
     struct ranging ranging;
     struct gas gas;
+    struct sound sound;
     struct sensors sensors;
     double *concentrations;
     int32_t *counts;
@@ -35,20 +41,30 @@ struct run {
     struct network network;
 };
 
-static struct truth truth_at(const struct run *run, double time_s)
+static struct truth truth_of(const struct run *run, const struct target_state *state, uint32_t target, double time_s)
 {
-    const struct trajectory *path = &run->field.trajectory;
-    struct truth truth = {.time_s = time_s, .present = path->count > 0 && time_s >= 0 && time_s <= path->duration_s};
+    struct truth truth = {.time_s = time_s, .present = state->present, .target = target};
     if (truth.present) {
-        const struct point p = trajectory_position(path, time_s);
-        const struct point v = trajectory_velocity(path, time_s);
-        truth.x_m = p.x_m;
-        truth.y_m = p.y_m;
-        truth.vx_mps = v.x_m;
-        truth.vy_mps = v.y_m;
+        truth.x_m = state->at.x_m;
+        truth.y_m = state->at.y_m;
+        truth.vx_mps = state->velocity.x_m;
+        truth.vy_mps = state->velocity.y_m;
         truth.rate = run->quantity == QUANTITY_GAS ? run->gas.rate_mlps : 0;
     }
     return truth;
+}
+
+static struct truth truth_at(const struct run *run, uint32_t target, double time_s)
+{
+    const struct target_state state = targets_at(&run->targets, target, time_s);
+    return truth_of(run, &state, target, time_s);
+}
+
+/* Of the target, or of the middle of the group, that an estimate is of. */
+static struct truth truth_behind(struct run *run, const struct mh_estimate *estimate, double time_s)
+{
+    const struct identified found = identify_estimate(&run->identify, &run->targets, estimate, time_s);
+    return truth_of(run, &found.state, found.number, time_s);
 }
 
 /* The heads of fixed clusters have an estimate at each instant; told are those of a report interval, and not the start. */
@@ -61,7 +77,7 @@ static bool is_reported(const struct run *run, const struct mh_estimate *estimat
 static void report_local(const struct run *run, uint32_t mote, double now_s, double time_s,
                          const struct mh_estimate *estimate)
 {
-    const struct truth truth = truth_at(run, time_s);
+    const struct truth truth = truth_at(run, 0, time_s);
     if (run->observer->local && is_reported(run, estimate)) {
         const uint8_t cluster = (uint8_t)run->roster.kit.clusters.nodes[mote].cluster;
         run->observer->local(run->observer->context, now_s, cluster, roster_id(&run->roster, mote), estimate, &truth);
@@ -70,17 +86,18 @@ static void report_local(const struct run *run, uint32_t mote, double now_s, dou
 
 static void report(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate)
 {
-    const struct run *run = context;
+    struct run *run = context;
     const bool is_sink = mote == run->roster.deployment.count;
     if (!is_sink && run->roster.kit.protocol.fixed) {
         report_local(run, mote, now_s, time_s, estimate);
     } else if (is_sink && run->roster.kit.protocol.in_turns) {
         if (run->observer->sink) {
-            const struct truth at_time = truth_at(run, time_s);
+            const struct truth at_time = truth_behind(run, estimate, time_s);
             run->observer->sink(run->observer->context, now_s, estimate, &at_time);
         }
     } else if (run->observer->estimate && (!run->roster.kit.protocol.own_rates || is_reported(run, estimate))) {
-        const struct truth at_time = truth_at(run, time_s), at_arrival = truth_at(run, time_s - (double)estimate->age);
+        const struct truth at_time = truth_behind(run, estimate, time_s);
+        const struct truth at_arrival = truth_behind(run, estimate, time_s - (double)estimate->age);
         run->observer->estimate(run->observer->context, now_s, roster_id(&run->roster, mote), estimate, &at_time,
                                 &at_arrival);
     }
@@ -114,43 +131,53 @@ static bool can_read(const struct run *run, uint64_t instant, double time_s, siz
     return (!run->power || run->power[node] == POWER_ON) && !sensors_lost(&run->sensors, instant, time_s, node);
 }
 
-/* Node `node` measures how far the source is, now, if it detects it, or the gas where it stands; `instant` is the nearest. */
-static void sample_alone(struct run *run, uint64_t instant, double time_s, uint32_t node, struct point source)
+/* What node `node` measures now; false: nothing. Who is asked says what he hears, however little. */
+static bool measure(const struct run *run, uint64_t instant, double time_s, uint32_t node, bool asked, double *value)
 {
     const struct recorded_node *place = &run->roster.deployment.nodes[node];
-    const double distance_m = hypot(hypot(place->x_m - source.x_m, place->y_m - source.y_m), place->z_m);
-    double value;
-    if (!can_read(run, instant, time_s, node)) {
-        return;
+    const struct point at = {place->x_m, place->y_m};
+    if (run->quantity == QUANTITY_SOUND) {
+        *value = sound_reading(&run->sound, &run->targets, time_s, node, at);
+        return asked || *value >= 1;
+    }
+    const struct target_state source = targets_at(&run->targets, 0, time_s);
+    if (!source.present) {
+        return false;
     }
     if (run->quantity == QUANTITY_GAS) {
-        value = gas_reading(&run->gas, source, time_s, node, (struct point){place->x_m, place->y_m});
-    } else if (!ranging_detects(&run->ranging, instant, node, distance_m, &value)) {
-        return;
+        *value = gas_reading(&run->gas, source.at, time_s, node, at);
+        return true;
     }
-    network_reading(&run->network, node, sensors_convert(&run->sensors, instant, time_s, node, value), 0);
+    const double distance_m = hypot(hypot(at.x_m - source.at.x_m, at.y_m - source.at.y_m), place->z_m);
+    return ranging_detects(&run->ranging, instant, node, distance_m, value);
+}
+
+/* `instant` is the nearest. */
+static void sample_alone(struct run *run, uint64_t instant, double time_s, uint32_t node, bool asked)
+{
+    double value;
+    if (can_read(run, instant, time_s, node) && measure(run, instant, time_s, node, asked, &value)) {
+        network_reading(&run->network, node, sensors_convert(&run->sensors, instant, time_s, node, value), 0);
+    }
 }
 
 static void sample_each(struct run *run, uint64_t instant, double time_s)
 {
-    const struct point source = trajectory_position(&run->field.trajectory, time_s);
     const bool own_rates = run->roster.kit.protocol.own_rates;
     for (uint32_t i = 0; i < run->roster.deployment.count; i++) {
         if (!own_rates || (instant > 0 && instant % run->roster.kit.clusters.nodes[i].period == 0)) {
-            sample_alone(run, instant, time_s, i, source);
+            sample_alone(run, instant, time_s, i, false);
         }
     }
 }
 
-/* A node whose sensor was asked, at whatever time; while the source is not on its way it senses nothing. */
+/* A node whose sensor was asked, at whatever time. */
 static void sense(void *context, uint32_t mote)
 {
     struct run *run = context;
-    const double time_s = network_time_s(&run->network);
-    const struct truth truth = truth_at(run, time_s);
-    if (truth.present && mote < run->roster.deployment.count) {
+    if (mote < run->roster.deployment.count) {
         const uint64_t nearest = (run->network.now + run->interval / 2) / run->interval;
-        sample_alone(run, nearest, time_s, mote, (struct point){truth.x_m, truth.y_m});
+        sample_alone(run, nearest, network_time_s(&run->network), mote, true);
     }
 }
 
@@ -177,8 +204,8 @@ static int sample(struct run *run)
 {
     const uint64_t instant = run->next++;
     const double time_s = network_time_s(&run->network);
-    if (run->observer->truth) {
-        const struct truth truth = truth_at(run, time_s);
+    for (uint32_t k = 0; run->observer->truth && k < run->targets.count; k++) {
+        const struct truth truth = truth_at(run, k, time_s);
         run->observer->truth(run->observer->context, &truth);
     }
     const bool together = run->quantity == QUANTITY_CONCENTRATION;
@@ -237,18 +264,21 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
         run->end = (sim_time)(scenario->source.duration_s * SIM_TIME_PER_S);
         return traffic_make(&run->traffic, (size_t)scenario->traffic.sources, nodes, run->interval, seed);
     }
-    if (field_make(&run->field, scenario, seed, error, error_size)) {
+    run->quantity = scenario->sensor.quantity;
+    if (targets_make(&run->targets, scenario, seed, error, error_size) ||
+        (run->quantity == QUANTITY_CONCENTRATION && field_make(&run->field, scenario, seed, error, error_size))) {
         return -1;
     }
-    run->instants = (sim_time)(run->field.trajectory.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
+    run->identify.range_m = scenario->sensor.range_m;
+    run->instants = (sim_time)(run->targets.duration_s * SIM_TIME_PER_S + 1e-3) / run->interval + 1;
     run->end =
         run->instants * run->interval; /* the head waits for the last instant's measurements less than one interval */
     if (run->roster.kit.protocol.fixed) { /* the sink joins the last instant's tracks */
         run->end += (sim_time)run->roster.kit.protocol.config.fixed.wait * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     }
-    run->quantity = scenario->sensor.quantity;
     run->ranging = ranging_of(scenario, &run->roster.kit.clusters, seed);
     run->gas = gas_of(scenario, seed);
+    run->sound = sound_of(scenario, seed);
     run->concentrations = malloc(nodes * sizeof *run->concentrations);
     run->counts = malloc(nodes * sizeof *run->counts);
     return run->concentrations && run->counts ? sensors_make(&run->sensors, scenario, seed, nodes) : -1;
@@ -287,6 +317,7 @@ static void tear_down(struct run *run)
     free(run->power);
     free(run->concentrations);
     field_free(&run->field);
+    targets_free(&run->targets);
     traffic_free(&run->traffic);
     roster_free(&run->roster);
 }

@@ -104,8 +104,9 @@ static void lay_strata(struct deployment *deployment, const struct scenario *sce
     struct splitmix stream = splitmix_begin(seed, SPLITMIX_DEPLOYMENT);
     for (size_t i = 0; i < deployment->count; i++) {
         struct recorded_node *node = &deployment->nodes[i];
+        const size_t row = i / side;
         node->x_m = ((double)(i % side) + splitmix_uniform(&stream)) * (field.width_m / (double)side);
-        node->y_m = ((double)(i / side) + splitmix_uniform(&stream)) * (field.height_m / (double)side);
+        node->y_m = ((double)row + splitmix_uniform(&stream)) * (field.height_m / (double)side);
     }
 }
 
