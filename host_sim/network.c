@@ -114,7 +114,8 @@ static void on_air(void *context, sim_time time, uint32_t sender, uint32_t desti
     network->frames_sent[kind]++;
     account_frame(&network->account, sender, time, account_cause(kind));
     const struct observer *observer = network->config.observer;
-    if (!observer->frame && !(observer->cluster && kind == MH_MESSAGE_FORM)) {
+    const bool followed = kind == MH_MESSAGE_FORM || kind == MH_MESSAGE_AWAKE || kind == MH_MESSAGE_LOCATE;
+    if (!observer->frame && !followed) {
         return;
     }
     struct network_frame *frames =
@@ -133,14 +134,20 @@ static bool follows_search(const struct network *network)
     return network->config.observer->cluster && network->config.roster->kit.protocol.protocol == &mh_protocol_token;
 }
 
-/* A frame has come to mote `head`. */
-static void take_answer(struct network *network, uint32_t head, const uint8_t *bytes, size_t length)
+/* An answer to a head has come to mote `receiver`: to a token's whoever it is for, by `prince` to who has asked. */
+static void take_answer(struct network *network, uint32_t receiver, const uint8_t *bytes, size_t length)
 {
     struct mh_message message;
     if (network->answer_count == NETWORK_ANSWERS || mh_wire_decode(mh_wire_all, bytes, length, &message) != MH_OK) {
         return;
     }
-    const struct network_answer answer = {head, (mh_node_id)message.as.answer.sender};
+    const bool to_asker = message.kind == MH_MESSAGE_SOUND;
+    if (to_asker && (mh_node_id)message.as.sound.asker != roster_id(network->config.roster, receiver)) {
+        return;
+    }
+    const uint32_t head = receiver;
+    const struct network_answer answer = {head,
+                                          (mh_node_id)(to_asker ? message.as.sound.sender : message.as.answer.sender)};
     for (size_t i = 0; i < network->answer_count; i++) {
         if (network->answers[i].head == head && network->answers[i].node == answer.node) {
             return;
@@ -158,7 +165,9 @@ static void heard(void *context, sim_time time, const uint8_t *bytes, size_t len
     for (uint32_t i = 0; i < count && network->account.open; i++) {
         account_frame(&network->account, receivers[i], time, cause);
     }
-    for (uint32_t i = 0; i < count && kind == MH_MESSAGE_ANSWER && follows_search(network); i++) {
+    const bool answers = (kind == MH_MESSAGE_ANSWER && follows_search(network)) ||
+                         (kind == MH_MESSAGE_SOUND && network->config.observer->cluster);
+    for (uint32_t i = 0; i < count && answers; i++) {
         take_answer(network, receivers[i], bytes, length);
     }
     const uint8_t *kept_bytes = keep(network, bytes, length);
@@ -212,8 +221,8 @@ static void take_clock_error(struct network *network, uint32_t mote, double erro
     }
 }
 
-/* The head of a search has an estimate of its own sample and of the answers that have come to it. */
-static void tell_heard(struct network *network, uint32_t head, double time_s)
+/* Head `head` has an estimate of track `track`, of its own sample and of the answers that have come to it. */
+static void tell_heard(struct network *network, uint32_t head, uint32_t track, double time_s)
 {
     const struct observer *observer = network->config.observer;
     mh_node_id members[NETWORK_ANSWERS];
@@ -226,7 +235,7 @@ static void tell_heard(struct network *network, uint32_t head, double time_s)
         }
     }
     network->answer_count = left;
-    observer->cluster(observer->context, time_s, 0, roster_id(network->config.roster, head), members, count,
+    observer->cluster(observer->context, time_s, track, roster_id(network->config.roster, head), members, count,
                       network->heads++ > 0);
 }
 
@@ -239,7 +248,7 @@ static void act(struct network *network, const struct host_action *action)
         break;
     case HOST_REPORT:
         if (follows_search(network) && roster_computes(config->roster, action->mote)) {
-            tell_heard(network, action->mote, seconds(network, (int64_t)action->time));
+            tell_heard(network, action->mote, 0, seconds(network, (int64_t)action->time));
         }
         if (roster_computes(config->roster, action->mote)) {
             account_step(&network->account, action->mote, action->time, action->as.estimate.measurements);
@@ -295,11 +304,54 @@ static void tell_cluster(struct network *network, const struct network_frame *fr
     network->formed[network->forms++ % NETWORK_FORMS] = *form;
 }
 
+/* By `prince`: who asks anew has no answers yet. */
+static void forget_answers(struct network *network, uint32_t head)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < network->answer_count; i++) {
+        if (network->answers[i].head != head) {
+            network->answers[left++] = network->answers[i];
+        }
+    }
+    network->answer_count = left;
+}
+
+/* Likewise a head of the protocol `prince`. */
+static void tell_awake(struct network *network, const struct network_frame *frame)
+{
+    const struct network_config *config = &network->config;
+    const enum mh_message_kind kind = frame_kind(&network->kinds, frame->bytes, frame->length);
+    struct mh_message message;
+    if (kind == MH_MESSAGE_LOCATE) {
+        forget_answers(network, frame->sender);
+    }
+    if (kind != MH_MESSAGE_AWAKE || mh_wire_decode(mh_wire_all, frame->bytes, frame->length, &message) != MH_OK) {
+        return;
+    }
+    const mh_awake_t *awake = &message.as.awake;
+    const struct network_told now = {(mh_node_id)awake->sender, (uint32_t)awake->target, (uint16_t)awake->generation};
+    for (uint64_t i = 0; i < NETWORK_FORMS && i < network->awake_count; i++) {
+        const struct network_told *told = &network->awakes[i];
+        if (told->head == now.head && told->target == now.target && told->generation == now.generation) {
+            return;
+        }
+    }
+    network->awakes[network->awake_count++ % NETWORK_FORMS] = now;
+    const double time_s = seconds(network, (int64_t)frame->time);
+    if (config->observer->cluster) {
+        tell_heard(network, frame->sender, now.target, time_s);
+    }
+    if (config->awake) {
+        config->awake(config->context, time_s, seconds(network, time_of((mh_tick)awake->time_ms, frame->time)), awake);
+    }
+}
+
 static void tell_frame(struct network *network, const struct network_frame *frame)
 {
     const struct observer *observer = network->config.observer;
     const struct roster *roster = network->config.roster;
     tell_cluster(network, frame);
+    tell_awake(network, frame);
     if (!observer->frame) {
         return;
     }

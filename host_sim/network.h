@@ -31,6 +31,8 @@ struct network_config {
     int (*instant)(void *context);
     /* Mote `mote` lets its sensor sample, now: a lookahead after it said so. Whatever comes of it, it is charged. May be NULL. */
     void (*sense)(void *context, uint32_t mote);
+    /* By the protocol `prince`, a new head tells those around it of its target (once, however often it does), which it found at the instant found_s. May be NULL. */
+    void (*awake)(void *context, double time_s, double found_s, const mh_awake_t *awake);
     /* An estimate of mote `mote` for the instant `time_s`. */
     void (*report)(void *context, uint32_t mote, double now_s, double time_s, const struct mh_estimate *estimate);
 };
@@ -59,8 +61,15 @@ struct network {
     struct network_answer {
         uint32_t head; /* a mote */
         mh_node_id node;
-    } answers[NETWORK_ANSWERS]; /* in a search, those that have come to a head that has not reported since */
+    } answers
+        [NETWORK_ANSWERS]; /* in a search, or by `prince`, those that have come to a head that has said nothing since */
     size_t answer_count;
+    struct network_told {
+        mh_node_id head;
+        uint32_t target;
+        uint16_t generation;
+    } awakes[NETWORK_FORMS]; /* told last, likewise */
+    uint64_t awake_count;
     uint64_t heads; /* of searches, told */
     struct account account;
     double *clock_error_s; /* of each mote, NaN where it does not know the time; NULL if all clocks are ideal */

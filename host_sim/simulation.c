@@ -103,6 +103,33 @@ static void report(void *context, uint32_t mote, double now_s, double time_s, co
     }
 }
 
+/* A new head tells those around it of its target. */
+static void awake(void *context, double time_s, double found_s, const mh_awake_t *message)
+{
+    struct run *run = context;
+    if (!run->observer->watch) {
+        return;
+    }
+    const double vx_mps = message->vx_cmps / 1e2, vy_mps = message->vy_cmps / 1e2;
+    struct watch_news news = {.target = (uint32_t)message->target,
+                              .number = UINT32_MAX,
+                              .head = (mh_node_id)message->sender,
+                              .prince = (mh_node_id)message->prince,
+                              .prince_s = found_s + message->enters_cs / 1e2,
+                              .x_m = message->x_mm / 1e3 + vx_mps * (time_s - found_s),
+                              .y_m = message->y_mm / 1e3 + vy_mps * (time_s - found_s),
+                              .vx_mps = vx_mps,
+                              .vy_mps = vy_mps,
+                              .sd_m = (double)NAN,
+                              .extent_m = (uint16_t)message->extent_cm / 1e2,
+                              .members = message->members > 1 ? (unsigned)message->members : 1};
+    if (news.members == 1) {
+        const struct point at = {message->x_mm / 1e3, message->y_mm / 1e3};
+        news.number = identify_target(&run->identify, &run->targets, news.target, at, found_s);
+    }
+    run->observer->watch(run->observer->context, time_s, &news);
+}
+
 /* Nodes die and restart. What begins now has begun: asked half a microsecond later, so that rounding does not count. */
 static int switch_nodes(struct run *run)
 {
@@ -259,7 +286,7 @@ static int make_world(struct run *run, const struct scenario *scenario, uint64_t
         }
         run->next_switch = 0;
     }
-    run->interval = (sim_time)run->roster.kit.sensor.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
+    run->interval = (sim_time)run->roster.kit.head.interval * (SIM_TIME_PER_S / MH_TICKS_PER_S);
     if (scenario->source.path == PATH_NONE) {
         run->end = (sim_time)(scenario->source.duration_s * SIM_TIME_PER_S);
         return traffic_make(&run->traffic, (size_t)scenario->traffic.sources, nodes, run->interval, seed);
@@ -297,6 +324,7 @@ static int bring_up(struct run *run, const struct host_provider *hosts, const st
                                           .context = run,
                                           .sense = sense,
                                           .instant = has_source ? instant_of_source : instant_of_traffic,
+                                          .awake = awake,
                                           .report = report};
     snprintf(error, error_size, "out of memory");
     if (roster_make(&run->roster, scenario, seed, error, error_size) ||

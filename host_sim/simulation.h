@@ -22,13 +22,14 @@ struct truth {
 
 /* How the nodes around a target stand, as its new head tells them. */
 struct watch_news {
-    uint32_t target;                       /* its identifier in the network */
-    uint32_t number;                       /* of the target, from 0; UINT32_MAX: of none, or of a group */
-    mh_node_id head, prince;               /* prince MH_BROADCAST: none */
-    double prince_s;                       /* when the target enters the prince's sensing range */
-    double x_m, y_m, vx_mps, vy_mps, sd_m; /* the target now, as the head has it; both velocities 0: not known */
-    double extent_m;                       /* of a group, else 0 */
-    unsigned members;                      /* of a group, else 1 */
+    uint32_t target;         /* its identifier in the network */
+    uint32_t number;         /* of the target, from 0; UINT32_MAX: of none, or of a group */
+    mh_node_id head, prince; /* prince MH_BROADCAST: none */
+    double prince_s;         /* when the target enters the prince's sensing range */
+    double x_m, y_m, vx_mps, vy_mps,
+        sd_m;         /* the target now, as the head has it; both velocities 0, sd NaN: not known */
+    double extent_m;  /* of a group, else 0 */
+    unsigned members; /* of a group, else 1 */
 };
 
 /* How a mote is. */

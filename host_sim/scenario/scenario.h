@@ -6,8 +6,8 @@
 #ifndef MOTEHOUND_SIM_SCENARIO_H
 #define MOTEHOUND_SIM_SCENARIO_H
 
+#include "motehound/acoustic.h"
 #include "motehound/circles.h"
-#include "motehound/distance_table.h"
 #include "motehound/election.h"
 #include "motehound/fusion.h"
 #include "motehound/group.h"
@@ -41,7 +41,7 @@ struct waypoint {
 
 /* One target of PATH_SCRIPTED. */
 struct scripted_target {
-    double start_s; /* it is there from then on, until the end of its way */
+    double start_s; /* it is there from source.start_s and this on, until the end of its way */
     double speed_mps;
     double loudness; /* as source.loudness */
     struct waypoint *points;
@@ -63,8 +63,6 @@ enum election_rule { ELECTION_PRINCE = MH_ELECTIONS, ELECTION_COMPETITION, ELECT
 enum resampling_kind { RESAMPLING_PRC, RESAMPLING_SYSTEMATIC };
 
 enum layout_kind { LAYOUT_UNIFORM, LAYOUT_R2, LAYOUT_GRID, LAYOUT_HASHED, LAYOUT_FILE, LAYOUT_RINGS, LAYOUT_STRAT };
-
-enum separation_kind { SEPARATION_JOINT, SEPARATION_DECOMPOSITION, SEPARATION_NONE };
 
 enum { SCENARIO_NUMBERS_MAX = 16, TARGETS_MAX = 16 };
 
@@ -92,7 +90,8 @@ struct scenario {
         double rate_mlps;      /* of QUANTITY_GAS: q ... */
         double mixing_m2ps;    /* ... and K, the air's turbulent diffusion */
         double fluctuation;    /* sd of what comes to a sensor, as a share of its mean */
-        double loudness;       /* of QUANTITY_SOUND: energy of a target at sensor.range_m, in units of the threshold */
+        double start_s;  /* of PATH_SCRIPTED and what follows it: when targets begin, or scripted ones count from */
+        double loudness; /* of QUANTITY_SOUND: energy of a target at sensor.range_m, in units of the threshold */
     } source;
     struct {
         double speed_mps, direction_rad; /* it blows towards, counter-clockwise from the x axis */
@@ -263,9 +262,11 @@ struct scenario {
         double noise_ppm;                /* gas: assumed noise; 0: the sensor's */
         double calm_step_m, calm_sd_m;   /* gas: an estimate that is calm */
         int64_t intervals;               /* dm: of the table of distances; 0: the distance itself */
-        enum mh_distance_mode table;     /* dm */
         enum mh_circles_variant variant; /* dm: of three circles */
-        enum separation_kind separation; /* acoustic, dm, ml: of several targets' sounds */
+        enum mh_separation separation;   /* acoustic, dm, ml: of several targets' sounds */
+        double share_range_m;            /* decomposition: targets farther from a node have no share; 0: 3 R */
+        int64_t strongest;               /* acoustic, dm, ml: nodes that a fix is made from; 0: all */
+        bool filtered;                   /* acoustic, dm, ml */
         enum mh_group_mode groups;       /* acoustic, dm: targets that are near each other */
     } tracker;
     struct {

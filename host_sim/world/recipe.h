@@ -19,7 +19,7 @@ enum recipe_purpose {
     RECIPE_HEADING = 5,
     RECIPE_GAS_NOISE = 16, /* b: the millisecond and the node */
     RECIPE_GAS_FLUCTUATION = 17,
-    RECIPE_FIRST_HEAD = 18, /* b: which of a deployment's searches */
+    RECIPE_FIRST_HEAD = 18,   /* b: which of a deployment's searches */
     RECIPE_SOUND_SOURCE = 19, /* b: the millisecond and the node */
     RECIPE_SOUND_BACKGROUND = 20,
     RECIPE_RANGE_NOISE = 1000

@@ -232,7 +232,7 @@ static int make_scripted(struct targets *targets, const struct scenario *scenari
         alone.source.points = script->points;
         alone.source.points_count = script->points_count;
         alone.source.speed_mps = script->speed_mps;
-        targets->list[i].start_s = script->start_s;
+        targets->list[i].start_s += script->start_s;
         targets->list[i].loudness = script->loudness;
         if (trajectory_make(&targets->list[i].path, &alone, seed, error, error_size)) {
             return -1;
@@ -272,6 +272,7 @@ int targets_make(struct targets *targets, const struct scenario *scenario, uint6
     }
     for (size_t i = 0; i < targets->count; i++) {
         targets->list[i].loudness = scenario->source.loudness;
+        targets->list[i].start_s = targets_are_several(path) ? scenario->source.start_s : 0;
     }
     if (targets->count > 0 && make_paths(targets, scenario, seed, error, error_size)) {
         targets_free(targets);

@@ -1,6 +1,6 @@
 /* The targets of a run: one, as source.* says, or several. Each moves on a way of its own, from when it begins until it ends.
  *
- * Where source.path generates several, target.count of them move along the first leg of source.points, from A to B, at source.speed_mps. s is
+ * Several begin at source.start_s. Where source.path generates them, target.count of them move along the first leg of source.points, from A to B, at source.speed_mps. s is
  * target.spacing_m; i = 0 ... n - 1 counts from the right of the leg to its left; all come past its middle together.
  *
  * parallel:  i is (i - (n - 1) / 2) s to the left of the leg.

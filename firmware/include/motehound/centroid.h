@@ -1,4 +1,4 @@
-/* The tracker `centroid`: the mean place of the nodes that measure the target, whatever they measure. The baseline of every other method.
+/* The tracker `centroid`: the mean place of the nodes that measure the target, whatever they measure, or of those that measure most. The baseline of every other method.
  *
  * Without a measurement it stays where it was. Nothing is predicted, so every position is reported.
  *
@@ -11,8 +11,12 @@
 
 #include "motehound/tracker.h"
 
+#define MH_CENTROID_STRONGEST_MAX 8
+
 struct mh_centroid_config {
     mh_real sensing_range_m; /* how far a node measures, 1e-2 to 1e4; nominal 50 */
+    uint8_t
+        strongest; /* only so many nodes, of the largest values, at most MH_CENTROID_STRONGEST_MAX; nominal 0: all */
 };
 
 /* The state, in the header so that it can be allocated statically; its members are the tracker's own. */

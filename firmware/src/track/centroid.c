@@ -4,14 +4,18 @@
 
 #define BYTES 12
 
-void mh_centroid_config_default(struct mh_centroid_config *config) { config->sensing_range_m = 50.0f; }
+void mh_centroid_config_default(struct mh_centroid_config *config)
+{
+    config->sensing_range_m = 50.0f;
+    config->strongest = 0;
+}
 
 static enum mh_status init(void *state, const void *config, mh_tick interval)
 {
     struct mh_centroid_state *centroid = state;
     const struct mh_centroid_config *given = config;
     if (centroid == NULL || given == NULL || interval < 1 || interval > 3600000u ||
-        !mh_within(given->sensing_range_m, 1e-2f, 1e4f)) {
+        !mh_within(given->sensing_range_m, 1e-2f, 1e4f) || given->strongest > MH_CENTROID_STRONGEST_MAX) {
         return MH_ERR_ARGUMENT;
     }
     const struct mh_centroid_state begun = {.config = *given};
@@ -28,6 +32,37 @@ static struct mh_estimate answer_at(const struct mh_centroid_state *centroid, mh
                                        .stored = centroid->position,
                                        .flags = MH_ESTIMATE_COASTED};
     return answer;
+}
+
+/* The mean place of the `most` measurements of the largest values, the first of equals first; count > most. */
+static struct mh_vec2 centroid_of_strongest(const struct mh_measurement *measurements, size_t count, uint8_t most,
+                                            const struct mh_place *origin)
+{
+    size_t kept[MH_CENTROID_STRONGEST_MAX]; /* strongest first */
+    uint8_t kept_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint8_t place = kept_count;
+        while (place > 0 && measurements[kept[place - 1]].value < measurements[i].value) {
+            place--;
+        }
+        if (place == most) {
+            continue;
+        }
+        kept_count = (uint8_t)(kept_count < most ? kept_count + 1 : most);
+        for (uint8_t k = (uint8_t)(kept_count - 1); k > place; k--) {
+            kept[k] = kept[k - 1];
+        }
+        kept[place] = i;
+    }
+    struct mh_vec2 sum = {0, 0};
+    for (uint8_t k = 0; k < kept_count; k++) {
+        const struct mh_vec2 at = mh_place_relative(&measurements[kept[k]].place, origin);
+        sum.x += at.x;
+        sum.y += at.y;
+    }
+    sum.x /= (mh_real)kept_count;
+    sum.y /= (mh_real)kept_count;
+    return sum;
 }
 
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
@@ -54,11 +89,15 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
             centroid->origin.z_mm = 0;
             centroid->tracking = true;
         }
-        centroid->position = mh_centroid(measurements, count, &centroid->origin);
+        const uint8_t most = centroid->config.strongest;
+        const bool all = most == 0 || count <= most;
+        const size_t used = all ? count : most;
+        centroid->position = all ? mh_centroid(measurements, count, &centroid->origin)
+                                 : centroid_of_strongest(measurements, count, most, &centroid->origin);
         *estimate = answer_at(centroid, time);
-        estimate->measurements = (uint16_t)(count < UINT16_MAX ? count : UINT16_MAX);
+        estimate->measurements = (uint16_t)(used < UINT16_MAX ? used : UINT16_MAX);
         estimate->covariance.xx = estimate->covariance.yy =
-            mh_squared(centroid->config.sensing_range_m) / (4.0f * (mh_real)count);
+            mh_squared(centroid->config.sensing_range_m) / (4.0f * (mh_real)used);
         estimate->states = 2;
         estimate->flags = begins ? MH_ESTIMATE_STARTED : 0;
     }

@@ -60,6 +60,31 @@ static void mean_of_the_nodes(void)
     TEST_ASSERT_EQUAL_INT(MH_ERR_TIME, mh_tracker_centroid.predict(&centroid, 7999, &estimate));
 }
 
+static void of_the_strongest(void)
+{
+    struct mh_centroid_config config;
+    mh_centroid_config_default(&config);
+    config.strongest = MH_CENTROID_STRONGEST_MAX + 1;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_centroid.init(&centroid, &config, 2000));
+    begin();
+    centroid.config.strongest = 2;
+    for (uint8_t i = 0; i < 3; i++) { /* the first and the last, then the last two; equals: the first two */
+        set[i].value = i == 1 ? -5 : 7;
+    }
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(2000, 3));
+    assert_at(900000000, 30000);
+    TEST_ASSERT_EQUAL_UINT16(2, estimate.measurements);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 2500.0f / 8.0f, estimate.covariance.xx);
+    set[0].value = -6;
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(4000, 3));
+    assert_at(900015000, 30000);
+    set[0].value = set[1].value = set[2].value;
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(6000, 3));
+    assert_at(900015000, 0);
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(8000, 2)); /* no more than those */
+    assert_at(900015000, 0);
+}
+
 static void is_handed_over(void)
 {
     uint8_t bytes[MH_TRACK_BYTES_MAX];
@@ -82,7 +107,7 @@ static void is_handed_over(void)
 
 static void refuses_what_is_out_of_range(void)
 {
-    const struct mh_centroid_config bad = {NAN}, good = {50};
+    const struct mh_centroid_config bad = {NAN, 0}, good = {50, 0};
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_centroid.init(&centroid, &bad, 2000));
     TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_centroid.init(&centroid, &good, 0));
     begin();
@@ -94,6 +119,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(mean_of_the_nodes);
+    RUN_TEST(of_the_strongest);
     RUN_TEST(is_handed_over);
     RUN_TEST(refuses_what_is_out_of_range);
     port_exit(UNITY_END() > 0);
