@@ -8,7 +8,7 @@
 FILE *open_answers(const char *name)
 {
     char path[1024];
-    snprintf(path, sizeof path, MOTEHOUND_KNOWN_ANSWERS "/luo/%s", name);
+    snprintf(path, sizeof path, MOTEHOUND_KNOWN_ANSWERS "/%s", name);
     FILE *file = fopen(path, "rb");
     TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
     return file;

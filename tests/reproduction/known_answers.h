@@ -1,4 +1,4 @@
-/* The files of tests/known_answers/luo. A file that is not there fails the test that calls: it is part of the repository. */
+/* The files of tests/known_answers, each by its path from there. A file that is not there fails the test that calls: it is part of the repository. */
 #ifndef KNOWN_ANSWERS_H
 #define KNOWN_ANSWERS_H
 

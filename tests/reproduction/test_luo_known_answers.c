@@ -17,7 +17,7 @@ void tearDown(void) {}
 
 static void solutions_of_equation_10(void)
 {
-    FILE *file = open_answers("ls10.csv");
+    FILE *file = open_answers("luo/ls10.csv");
     char line[LINE_MAX_CHARS];
     TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, file));
     int cases = 0;

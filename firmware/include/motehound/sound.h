@@ -15,9 +15,9 @@
 #define MH_SOUND_NEAR_M 1.0f
 
 struct mh_sound {
-    mh_real loudness_m2;   /* C, > 0: the square of the sensing range */
-    mh_real source_sd;     /* tau, >= 0: a share of the energy */
-    mh_real background_sd; /* eta, >= 0: units of energy; not both 0 where a variance is asked for */
+    mh_real loudness_m2;   /* C, 1 to 1e8: the square of the sensing range */
+    mh_real source_sd;     /* tau, 0 to 1000: a share of the energy */
+    mh_real background_sd; /* eta, 0 to 1000: units of energy; one of the two at least 0.001 */
 };
 
 /* True if the values are in their ranges. */

@@ -4,8 +4,9 @@
  * Gauss-Newton on all of them; within 3 % of the Cramer-Rao bound. Beside it the simpler ones to compare with. All of them take one target, alone; for several see
  * joint_sources.h.
  *
- * All places are relative to an origin near the work, m. All functions check that what they are given is finite, and leave the position untouched after an
- * error: MH_ERR_NOT_FINITE, MH_ERR_TOO_FEW (as each says), MH_ERR_ARGUMENT (configuration). */
+ * All places are relative to an origin near the work, m. After an error the outputs are untouched: MH_ERR_NOT_FINITE, MH_ERR_RANGE (a place beyond 1e6 m, an energy
+ * beyond 1e9), MH_ERR_TOO_FEW (as each says), MH_ERR_ARGUMENT (sound: see sound.h; range 1 to 1e4 m; no iteration; prior). Energies of 0 and below are in order: such
+ * a node is at the end of its range, or in a likelihood at what the model says. */
 #ifndef MOTEHOUND_SOUND_FIX_H
 #define MOTEHOUND_SOUND_FIX_H
 
@@ -23,12 +24,13 @@ struct mh_heard {
     mh_real energy;
 };
 
-/* The `capacity` strongest of `measurements` (value: energy), strongest first, the first of equals first -> how many. count * capacity steps at most. */
+/* `one` into a list of the strongest so far, strongest first, of equals the first come first; it drops out if `capacity` have as much energy. `*count` is kept up to
+ * date. One comparison a place at most. */
+void mh_heard_insert(struct mh_heard *heard, size_t *count, size_t capacity, const struct mh_heard *one);
+
+/* The `capacity` strongest of `measurements` (value: energy), as above -> how many. */
 size_t mh_strongest(const struct mh_measurement *measurements, size_t count, const struct mh_place *origin,
                     struct mh_heard *heard, size_t capacity);
-
-/* Strongest first. Insertion sort: quick where the order is nearly right. */
-void mh_heard_sort(struct mh_heard *heard, size_t count);
 
 /* Binary centroid: the mean place of the nodes. Too few: none. */
 enum mh_status mh_heard_centroid(const struct mh_heard *heard, size_t count, struct mh_vec2 *position);
@@ -44,7 +46,7 @@ enum mh_status mh_median_fix(const struct mh_heard *heard, size_t count, const s
 /* What is known of the position besides: independent of what is heard, the same in all directions. */
 struct mh_position_prior {
     struct mh_vec2 mean;
-    mh_real sd_m; /* > 0 */
+    mh_real sd_m; /* 0.001 to 1e6 */
 };
 
 /* Gauss-Newton from *position with all that was heard, weighted by the model's variances:
@@ -58,17 +60,18 @@ enum mh_status mh_sound_refine(const struct mh_sound *sound, const struct mh_hea
                                const struct mh_position_prior *prior, uint8_t iterations, struct mh_vec2 *position,
                                struct mh_sym2 *information);
 
-/* The default localiser: mh_median_fix() with undivided distances, then mh_sound_refine() twice. Too few: none. */
+/* The default localiser: mh_median_fix() with 40 intervals, then mh_sound_refine() twice. Too few: none. */
 enum mh_status mh_sound_fix(const struct mh_sound *sound, const struct mh_heard *heard, size_t count,
                             const struct mh_position_prior *prior, struct mh_vec2 *position,
                             struct mh_sym2 *information);
 
-/* Maximum likelihood by a grid of 1 m over the places from which all could have heard it, and 10 m around: a baseline, a hundred times as dear. */
+/* Maximum likelihood by a grid of 1 m over the places within the sensing range of all nodes, and 10 m around: a baseline, a hundred times as dear. A node whose range shares
+ * no place with those before it does not bound the grid, so the strongest should be first. */
 enum mh_likelihood {
     MH_LIKELIHOOD_CONSTANT, /* sum (y - e)^2, as if all energies were equally certain (Han, Eqs. (2-3), (2-4)) */
-    MH_LIKELIHOOD_FULL      /* that of ln y with the model's variance; then on grids down to 0.1 m about the best */
+    MH_LIKELIHOOD_FULL /* that of ln max(y, 1/4) with the model's variance; then on a grid of 0.1 m about the best */
 };
-/* At most 120 x 120 points (coarser then), each with a division a node, and in full with two logarithms more. Too few: none. */
+/* At most 121 x 121 points, farther apart where that is too few; each takes a division a node, in full three and two logarithms. Too few: none. */
 enum mh_status mh_likeliest(const struct mh_sound *sound, const struct mh_heard *heard, size_t count,
                             enum mh_likelihood likelihood, struct mh_vec2 *position);
 

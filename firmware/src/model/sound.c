@@ -2,8 +2,8 @@
 
 bool mh_sound_valid(const struct mh_sound *sound)
 {
-    return mh_within(sound->loudness_m2, MH_REAL_MIN, 1e12f) && mh_within(sound->source_sd, 0, 1e6f) &&
-           mh_within(sound->background_sd, 0, 1e6f);
+    return mh_within(sound->loudness_m2, 1, 1e8f) && mh_within(sound->source_sd, 0, 1000) &&
+           mh_within(sound->background_sd, 0, 1000) && mh_max(sound->source_sd, sound->background_sd) >= 0.001f;
 }
 
 mh_real mh_sound_detected(const struct mh_sound_detection *detection, mh_real distance_m)
