@@ -90,13 +90,13 @@ static size_t collect(const struct mh_diffusion *state, const struct run *run, s
 static void load(struct run *run)
 {
     char file[64];
-    snprintf(file, sizeof file, "%s_X.f32", run->name);
+    snprintf(file, sizeof file, "luo/%s_X.f32", run->name);
     run->places = read_floats(file, &run->nodes);
     run->nodes /= 2;
-    snprintf(file, sizeof file, "%s_C.f32", run->name);
+    snprintf(file, sizeof file, "luo/%s_C.f32", run->name);
     run->readings = read_floats(file, &run->samples);
     run->samples /= run->nodes;
-    snprintf(file, sizeof file, "%s_track.csv", run->name);
+    snprintf(file, sizeof file, "luo/%s_track.csv", run->name);
     run->outputs = read_track(file, run->answers);
 }
 

@@ -69,10 +69,10 @@ static struct deviation run(const char *name, mh_tick interval)
 {
     char file_name[32];
     size_t count;
-    snprintf(file_name, sizeof file_name, "%s_X.f32", name);
+    snprintf(file_name, sizeof file_name, "luo/%s_X.f32", name);
     float *places = read_floats(file_name, &count);
     const size_t nodes = count / 2;
-    snprintf(file_name, sizeof file_name, "%s_C.f32", name);
+    snprintf(file_name, sizeof file_name, "luo/%s_C.f32", name);
     float *readings = read_floats(file_name, &count);
     const size_t samples = count / nodes;
     struct mh_measurement *measurements = calloc(nodes, sizeof *measurements);
@@ -84,7 +84,7 @@ static struct deviation run(const char *name, mh_tick interval)
         measurements[i].place.y_mm = (int32_t)lround(1000.0 * (double)places[2 * i + 1]);
         measurements[i].flags = MH_MEASUREMENT_HAS_INCREMENT;
     }
-    snprintf(file_name, sizeof file_name, "%s_track.csv", name);
+    snprintf(file_name, sizeof file_name, "luo/%s_track.csv", name);
     FILE *answers = open_answers(file_name);
     char line[LINE_MAX_CHARS];
     TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, answers));

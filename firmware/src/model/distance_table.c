@@ -1,6 +1,6 @@
 #include "motehound/distance_table.h"
 
-enum { FINEST = 40 };
+#define FINEST 40U /* intervals */
 
 #ifdef __AVR__
 #include <avr/pgmspace.h>
@@ -20,7 +20,7 @@ static const mh_real levels[FINEST] PROGMEM = {
 static mh_real level(uint8_t intervals, uint16_t k)
 {
     if (FINEST % intervals == 0) {
-        return pgm_read_float(&levels[k * (uint16_t)(FINEST / intervals) - 1U]);
+        return pgm_read_float(&levels[k * (FINEST / intervals) - 1]);
     }
     return mh_squared((mh_real)intervals / (mh_real)k);
 }
