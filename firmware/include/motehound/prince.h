@@ -40,7 +40,7 @@
  * With wake windows (rendezvous.h) radios of nodes without watching rows sleep but in these; then awake_t, rest_t and fail_t go twice: at once and in the next window.
  *
  * The sensor is sampled when the protocol wants it (mh_mote_config.sensor: interval 1, report_always). All motes but the sink have a head's configuration; its tracker must save. Needs the network's time (to some 50 ms),
- * and does nothing before it is known. Nodes say hello twice in the first MH_PRINCE_START ticks and then once a hello period: whom a node has heard it can name as prince.
+ * and does nothing before it is known. Nodes say hello three times in the first MH_PRINCE_START ticks and then once a hello period: whom a node has heard it can name as prince.
  *
  * Memory: at most 300 bytes a target on an ATmega128; docs/prince.md has the table of the state machine, docs/costs.md the rest. */
 #ifndef MOTEHOUND_PRINCE_H
@@ -178,6 +178,7 @@ struct mh_prince_row {
     mh_tick arms;    /* who competes may not before */
     mh_tick hold;    /* nor before this */
     mh_tick queried; /* the last query heard, or sent */
+    mh_tick said;    /* when awake_t or fail_t was last said again */
 
     uint8_t set;                   /* bit k: timer k is set ... */
     mh_tick due[MH_PRINCE_TIMERS]; /* ... for this network time */
@@ -211,15 +212,17 @@ struct mh_prince {
     struct mh_neighbours neighbours;
     struct mh_rendezvous rendezvous;
     struct mh_random random;
-    mh_tick now, time;   /* the mote's own time and the network's, of the event that is being handled */
-    mh_tick began;       /* when the network's time became known */
-    bool running;        /* it is */
-    uint16_t hellos;     /* sent */
-    mh_tick hello, tick; /* the next one; the next sample of a watcher, or of one who looks for new targets */
-    uint8_t founded;     /* targets */
-    bool sampling;       /* a sample of `sampled` is awaited ... */
-    bool ticking;        /* ... for what a watcher does at a tick, too */
-    bool heard;          /* value holds, of the time sampled */
+    mh_tick now, time; /* the mote's own time and the network's, of the event that is being handled */
+    mh_tick began;     /* when the network's time became known */
+    bool running;      /* it is */
+    uint16_t hellos;   /* sent */
+    mh_tick hello;     /* the next one */
+    bool ticks;        /* the next sample of a watcher, or of one who looks for new targets, is due at ... */
+    mh_tick tick;      /* ... this time */
+    uint8_t founded;   /* targets */
+    bool sampling;     /* a sample of `sampled` is awaited ... */
+    bool ticking;      /* ... for what a watcher does at a tick, too */
+    bool heard;        /* value holds, of the time sampled */
     mh_tick sampled;
     mh_q20 value;
     uint8_t reply_count;

@@ -60,8 +60,11 @@ bool mh_prince_hears(const struct mh_prince *p, const struct mh_prince_row *row)
 /* From here on the row's node is a competitor, at least for `ticks` from now. */
 void mh_prince_become_competitor(struct mh_prince *p, struct mh_prince_row *row, mh_tick ticks);
 
-/* Stand to the target as its fix, and who is prince, say; until when, too. */
-void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row);
+/* Stand to the target as its fix, and who is prince, say, and until when; the new head stands at `head`, m relative to the fix, and who competes may not before `arms`. */
+void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct mh_vec2 head, mh_tick arms);
+
+/* p->value is more than all targets that are known explain. */
+bool mh_prince_is_new(const struct mh_prince *p);
 
 /* A tick: the sample is p->value. */
 void mh_prince_watch(struct mh_prince *p);

@@ -1,0 +1,237 @@
+#include "prince_node.h"
+
+#include "motehound/decomposition.h"
+
+#define AFTER_OUT 3000      /* ticks for which a watcher stays when the target should be out of range */
+#define LEAST_WATCH 2000    /* ticks, of a watcher */
+#define UNKNOWN_WATCH 15000 /* ... where it is not known how the target moves */
+#define LONGEST_WATCH 300000
+#define KEPT 20000          /* ticks for which a row is kept after that */
+#define REGENT_WAIT 1000    /* ticks after the prince is due ... */
+#define REGENT_SPREAD 500   /* ... and up to so many more, ... */
+#define BORDER_WAIT 300     /* ... and these in the border */
+#define OTHERS_WAIT 200     /* ticks in which somebody else may ask first */
+#define QUERY_REST 200      /* ticks after the window of a query that was heard, until the next */
+#define SLACK_M 10.0f       /* that a target may be off where it is expected */
+#define EXPLAINED 1.5f      /* times the energy expected of the targets that are known, and what is heard is one more */
+
+/* Where the target is expected now, relative to this node, m. */
+static struct mh_vec2 expected(const struct mh_prince *p, const struct mh_prince_row *row)
+{
+    const struct mh_place fix = {row->x_mm, row->y_mm, 0};
+    const mh_real seconds = mh_seconds_between(row->found, p->time);
+    struct mh_vec2 at = mh_place_relative(&fix, &p->node->place);
+    at.x += (mh_real)row->vx_cmps * 0.01f * seconds;
+    at.y += (mh_real)row->vy_cmps * 0.01f * seconds;
+    return at;
+}
+
+mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *row, mh_real *share, uint8_t *others)
+{
+    const struct mh_vec2 here = {0, 0};
+    const mh_real range_m = 3 * p->config->sensing_range_m;
+    struct mh_vec2 sources[MH_TARGETS_MAX];
+    uint8_t count = 1;
+    mh_real own = 1;
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        const struct mh_prince_row *other = &p->rows[i];
+        if (other != row && other->state != MH_PRINCE_FREE && other->fixed) {
+            const struct mh_vec2 at = expected(p, other);
+            if (mh_squared(at.x) + mh_squared(at.y) <= mh_squared(range_m)) {
+                sources[count++] = at;
+            }
+        }
+    }
+    if (row->fixed) {
+        sources[0] = expected(p, row);
+        own = mh_sound_share(sources, count, 0, here, range_m);
+    }
+    if (share) {
+        *share = own;
+    }
+    if (others) {
+        *others = (uint8_t)(count - 1);
+    }
+    return own * mh_q20_to_real(p->value);
+}
+
+/* What is expected of all targets but `own`, each `slack_m` nearer than expected, and more so the longer ago it was found. */
+static mh_real explained(const struct mh_prince *p, const struct mh_prince_row *own, mh_real slack_m)
+{
+    mh_real sum = 0;
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        const struct mh_prince_row *row = &p->rows[i];
+        if (row != own && row->state != MH_PRINCE_FREE && row->fixed) {
+            const struct mh_vec2 at = expected(p, row);
+            const mh_real drift_mps = row->vx_cmps == 0 && row->vy_cmps == 0 ? 2 * SLACK_M : 2;
+            const mh_real nearer_m =
+                slack_m > 0 ? slack_m + drift_mps * mh_seconds_between(row->found, p->time) : 0;
+            const mh_real distance_m = sqrtf(mh_squared(at.x) + mh_squared(at.y)) - nearer_m;
+            sum += p->config->loudness_m2 * row->members / mh_squared(mh_max(distance_m, 1));
+        }
+    }
+    return sum;
+}
+
+bool mh_prince_is_new(const struct mh_prince *p)
+{
+    bool waiting = false; /* there is one already */
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        waiting = waiting || (p->rows[i].state != MH_PRINCE_FREE && !p->rows[i].fixed);
+    }
+    const mh_real energy = mh_q20_to_real(p->value);
+    return !waiting && energy >= 1 && energy > EXPLAINED * explained(p, NULL, SLACK_M);
+}
+
+/* The target may be within range, by where it was. */
+static bool is_in_time(const struct mh_prince *p, const struct mh_prince_row *row)
+{
+    const mh_real speed_mps = hypotf(row->vx_cmps, row->vy_cmps) * 0.01f;
+    const mh_tick slack = (mh_tick)(SLACK_M * 1000.0f / mh_max(speed_mps, 1));
+    return !mh_tick_before(p->time, row->in - slack) && !mh_tick_before(row->out + slack, p->time);
+}
+
+bool mh_prince_hears(const struct mh_prince *p, const struct mh_prince_row *row)
+{
+    uint8_t others;
+    const mh_real energy = mh_q20_to_real(p->value), own = mh_prince_energy(p, row, NULL, &others);
+    const bool unforeseen = row->as == MH_NODE_COMPETITOR || row->as == MH_NODE_OUTER;
+    if (energy < 1 || others == 0) {
+        return energy >= 1;
+    }
+    return unforeseen ? energy > EXPLAINED * explained(p, row, 0) && (row->as == MH_NODE_COMPETITOR || own >= 1)
+                      : own >= 1 && is_in_time(p, row);
+}
+
+/* Watch for at least `ticks` from now. */
+static void stay(struct mh_prince *p, struct mh_prince_row *row, mh_tick ticks)
+{
+    mh_tick until = p->time + ticks;
+    if (row->state == MH_PRINCE_WATCH && mh_prince_is_set(row, MH_PRINCE_QUIET) &&
+        mh_tick_before(until, row->due[MH_PRINCE_QUIET])) {
+        until = row->due[MH_PRINCE_QUIET];
+    }
+    row->state = MH_PRINCE_WATCH;
+    mh_prince_set(row, MH_PRINCE_QUIET, until);
+    mh_prince_set(row, MH_PRINCE_FORGET, until + KEPT);
+}
+
+void mh_prince_become_competitor(struct mh_prince *p, struct mh_prince_row *row, mh_tick ticks)
+{
+    stay(p, row, ticks);
+    row->as = MH_NODE_COMPETITOR;
+    row->is_prince = row->is_passive = false;
+    row->arms = p->time;
+    mh_prince_clear(row, MH_PRINCE_DOG);
+}
+
+/* `seconds` after the fix, not past what a watcher waits for. */
+static mh_tick after_fix(const struct mh_prince_row *row, mh_real seconds)
+{
+    const mh_real longest = LONGEST_WATCH * 1e-3f;
+    return row->found + (mh_tick)(int32_t)(mh_clamp(seconds, -longest, longest) * 1000.0f);
+}
+
+/* When the target passes within `radius_m`, or where it never is so near, is nearest. */
+static void set_passage(const struct mh_prince *p, struct mh_prince_row *row, struct mh_vec2 node, mh_real radius_m)
+{
+    const struct mh_vec2 velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f};
+    const mh_real square = mh_squared(velocity.x) + mh_squared(velocity.y);
+    struct mh_time_window window;
+    if (mh_time_window(node, velocity, radius_m, &window) == MH_OK) {
+        row->in = after_fix(row, window.in);
+        row->out = after_fix(row, window.out);
+    } else if (square > 0) {
+        row->in = row->out = after_fix(row, (node.x * velocity.x + node.y * velocity.y) / square);
+    } else {
+        row->in = p->time;
+        row->out = p->time + UNKNOWN_WATCH;
+    }
+}
+
+static void sleep_on(struct mh_prince *p, struct mh_prince_row *row)
+{
+    const bool gone = mh_tick_before(row->out, p->time);
+    row->state = MH_PRINCE_SLEEP;
+    row->is_prince = false;
+    mh_prince_clear(row, MH_PRINCE_QUIET);
+    mh_prince_set(row, MH_PRINCE_FORGET, (gone ? p->time : row->out) + KEPT);
+}
+
+void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct mh_vec2 head, mh_tick arms)
+{
+    const struct mh_prince_config *config = p->config;
+    const mh_real extent_m = (mh_real)row->extent_cm * 0.01f;
+    const struct mh_strips strips = mh_strips(config->sensing_range_m, config->margin_m, config->outer_m, extent_m);
+    const struct mh_place fix = {row->x_mm, row->y_mm, 0};
+    const struct mh_vec2 node = mh_place_relative(&p->node->place, &fix);
+    const struct mh_course course = {
+        .head = head, .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
+    enum mh_node_class as = mh_node_class(&strips, &course, node);
+    row->is_prince = row->prince == p->node->id;
+    row->arms = arms;
+    if (row->is_prince) {
+        as = MH_NODE_INNER;
+    } else if (row->prince == MH_BROADCAST && (as == MH_NODE_INNER || as == MH_NODE_BORDER)) {
+        as = MH_NODE_COMPETITOR;
+    } else if (as == MH_NODE_INNER || as == MH_NODE_BORDER) {
+        row->arms = row->enters + REGENT_WAIT + mh_prince_wait(p, REGENT_SPREAD) +
+                    (as == MH_NODE_BORDER ? BORDER_WAIT : 0);
+    }
+    row->as = (uint8_t)as;
+    set_passage(p, row, node, as == MH_NODE_OUTER ? strips.outer_m : strips.border_m);
+    if (as == MH_NODE_NONE) {
+        sleep_on(p, row);
+        return;
+    }
+    const int32_t left = mh_ticks_between(p->time, row->out + AFTER_OUT);
+    row->state = MH_PRINCE_SLEEP; /* what was to be watched before does not matter any more */
+    stay(p, row, left > LEAST_WATCH ? (mh_tick)left : LEAST_WATCH);
+}
+
+static void watch_row(struct mh_prince *p, struct mh_prince_row *row)
+{
+    const struct mh_prince_config *config = p->config;
+    const bool queried = p->time - row->queried < config->window + QUERY_REST;
+    if (row->act != MH_PRINCE_ACT_NONE || row->wants != 0 || row->is_passive || queried ||
+        mh_tick_before(p->time, row->hold) || !mh_prince_hears(p, row)) {
+        return;
+    }
+    const bool armed = !mh_tick_before(p->time, row->arms);
+    if (row->is_prince) {
+        mh_prince_ask(p, row, MH_LOCATE_PRINCE);
+    } else if (row->as == MH_NODE_OUTER) {
+        if ((config->guards & MH_PRINCE_EXCEPTION) && mh_prince_energy(p, row, NULL, NULL) >= config->exception) {
+            row->kind = MH_LOCATE_EXCEPTION;
+            mh_prince_plan(p, row, MH_PRINCE_ACT_LOCATE, mh_prince_wait(p, OTHERS_WAIT));
+        }
+    } else if (armed && row->as == MH_NODE_COMPETITOR) {
+        mh_prince_contend(p, row);
+    } else if (armed && (config->guards & MH_PRINCE_REGENT)) {
+        row->kind = MH_LOCATE_REGENT;
+        mh_prince_plan(p, row, MH_PRINCE_ACT_LOCATE, mh_prince_wait(p, OTHERS_WAIT));
+    }
+}
+
+void mh_prince_watch(struct mh_prince *p)
+{
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        if (p->rows[i].state == MH_PRINCE_WATCH) {
+            watch_row(p, &p->rows[i]);
+        }
+    }
+}
+
+void mh_prince_quiet(struct mh_prince *p, struct mh_prince_row *row)
+{
+    if (row->state != MH_PRINCE_WATCH && row->state != MH_PRINCE_HEAD) {
+        return;
+    }
+    p->counters.lost += row->fixed && row->head == p->node->id;
+    mh_prince_calm(row);
+    if (row->fixed) {
+        sleep_on(p, row);
+    } else {
+        mh_prince_drop(p, row);
+    }
+}
