@@ -18,6 +18,7 @@
 #include "motehound/clock.h"
 #include "motehound/fixed.h"
 #include "motehound/head.h"
+#include "motehound/prince.h"
 #include "motehound/protocol.h"
 #include "motehound/sensor.h"
 
@@ -57,6 +58,8 @@ struct mh_mote_config {
 
 /* What the protocol `fixed` asks of a mote. */
 extern const struct mh_fixed_port mh_mote_fixed;
+/* ... and `prince`, of a mote with a head's configuration. */
+extern const struct mh_prince_port mh_mote_prince;
 
 struct mh_mote_counters {
     uint32_t frames_sent;

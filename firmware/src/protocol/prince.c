@@ -76,7 +76,10 @@ void mh_prince_send(struct mh_prince *p, const struct mh_message *message)
 
 /* ---- the table ---- */
 
-uint8_t mh_prince_number(const struct mh_prince *p, const struct mh_prince_row *row) { return (uint8_t)(row - p->rows); }
+uint8_t mh_prince_number(const struct mh_prince *p, const struct mh_prince_row *row)
+{
+    return (uint8_t)(row - p->rows);
+}
 
 struct mh_prince_row *mh_prince_find(struct mh_prince *p, uint32_t target)
 {
@@ -281,10 +284,10 @@ static void say_hello(struct mh_prince *p)
     mh_prince_send(p, &message);
     mh_neighbours_age(&p->neighbours, p->now);
     p->hellos = (uint16_t)(p->hellos < UINT16_MAX ? p->hellos + 1 : UINT8_MAX + 1);
-    p->hello = p->hellos < HELLOS_AT_START
-                   ? p->began + part * p->hellos + mh_spread(p->node->id, p->hellos, part)
-                   : mh_rendezvous_next(&p->rendezvous,
-                                        p->time + period - mh_spread(p->node->id, p->hellos, period / 4));
+    p->hello =
+        p->hellos < HELLOS_AT_START
+            ? p->began + part * p->hellos + mh_spread(p->node->id, p->hellos, part)
+            : mh_rendezvous_next(&p->rendezvous, p->time + period - mh_spread(p->node->id, p->hellos, period / 4));
 }
 
 /* ---- the table of functions ---- */
@@ -317,23 +320,23 @@ static bool within(mh_real value, mh_real least, mh_real most) { return value >=
 static bool sound(const struct mh_prince_config *config)
 {
     const struct mh_prince_port *port = config->port;
-    bool sound = port && port->localise && port->expect && port->join && port->part &&
-                 config->election <= MH_PRINCE_TIMESTAMP && config->guards <= MH_PRINCE_ALL && config->replies >= 2 &&
-                 config->replies <= 100 && within(config->sensing_range_m, 1, 1000) &&
-                 config->radio_range_m > config->sensing_range_m && config->radio_range_m <= 10000 &&
-                 within(config->margin_m, 0, config->sensing_range_m) &&
-                 within(config->outer_m, config->sensing_range_m, 10 * config->sensing_range_m) &&
-                 within(config->exception, 1, 100) && within(config->loudness_m2, 1, 1e8f) &&
-                 within(config->step_m, 1, 10000) && config->tick >= 20 && config->tick <= 60000u &&
-                 config->window >= 20 && config->window <= 10000 && config->contest >= 1 && config->contest <= 10000 &&
-                 (config->watch_period == 0 || config->watch_period >= config->tick) &&
-                 config->watch_period <= 3600000u && config->wake_period <= 900000u &&
-                 (config->wake_period == 0 ||
-                  (config->wake_length >= 4 && config->wake_length < config->wake_period)) &&
-                 config->hello_period >= 10000 && config->hello_period <= 1000000u &&
-                 (config->entries || config->entry_count == 0);
+    bool sound =
+        port && port->localise && port->expect && port->join && port->part && config->election <= MH_PRINCE_TIMESTAMP &&
+        config->guards <= MH_PRINCE_ALL && config->replies >= 2 && config->replies <= 100 &&
+        within(config->sensing_range_m, 1, 1000) && config->radio_range_m > config->sensing_range_m &&
+        config->radio_range_m <= 10000 && within(config->margin_m, 0, config->sensing_range_m) &&
+        within(config->outer_m, config->sensing_range_m, 10 * config->sensing_range_m) &&
+        within(config->exception, 1, 100) && within(config->loudness_m2, 1, 1e8f) && within(config->step_m, 1, 10000) &&
+        config->tick >= 20 && config->tick <= 60000u && config->window >= 20 && config->window <= 10000 &&
+        config->contest >= 1 && config->contest <= 10000 &&
+        (config->watch_period == 0 || config->watch_period >= config->tick) && config->watch_period <= 3600000u &&
+        config->wake_period <= 900000u &&
+        (config->wake_period == 0 || (config->wake_length >= 4 && config->wake_length < config->wake_period)) &&
+        config->hello_period >= 10000 && config->hello_period <= 1000000u &&
+        (config->entries || config->entry_count == 0);
     for (uint8_t i = 0; sound && i < config->entry_count; i++) {
-        sound = mh_coordinate_valid(config->entries[i].place.x_mm) && mh_coordinate_valid(config->entries[i].place.y_mm);
+        sound =
+            mh_coordinate_valid(config->entries[i].place.x_mm) && mh_coordinate_valid(config->entries[i].place.y_mm);
     }
     return sound;
 }
@@ -540,8 +543,8 @@ static void count(const void *state, struct mh_protocol_counters *counters)
     }
 }
 
-static mh_wire_types types[] = {&mh_wire_hello,   &mh_wire_awake,     &mh_wire_rest,     &mh_wire_locate,
-                                &mh_wire_sound,   &mh_wire_fail,      &mh_wire_succeed,  &mh_wire_compete,
+static mh_wire_types types[] = {&mh_wire_hello,     &mh_wire_awake,    &mh_wire_rest,    &mh_wire_locate,
+                                &mh_wire_sound,     &mh_wire_fail,     &mh_wire_succeed, &mh_wire_compete,
                                 &mh_wire_detection, &mh_wire_suppress, &mh_wire_merge,   NULL};
 
 const struct mh_protocol mh_protocol_prince = {

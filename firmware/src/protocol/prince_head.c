@@ -2,22 +2,20 @@
 
 #include <string.h>
 
-#define REMIND_PAUSE 500    /* ticks between awake_t that are said again */
-#define FAILED_WATCH 10000  /* ticks for which a fail_t makes competitors */
-#define HANDED_WATCH 3000   /* ticks for which an old head watches on */
-#define UNKNOWN_ARMS 3000   /* ticks after which competitors may contend where it is not known how the target moves */
-#define PRINCE_LEAD 0.8f    /* s, in which a prince learns that it is prince */
-#define DOG_WAIT 2500       /* ticks after the prince was due */
-#define DOG_HASTE 1.2f      /* times the largest of the last speeds is what the target may do */
-#define DOG_SPEED_MPS 6.0f  /* ... at least */
-#define UNGUARDED 15000     /* ticks for which a head without watchdog waits after the prince was due */
-#define KEPT 20000          /* ticks for which a row is kept after that */
-#define SLOWEST_MPS 1.0f    /* a velocity below is none */
-#define SPEED_STEPS 4.0f    /* that a speed is told in, a m/s */
+#define REMIND_PAUSE 500   /* ticks between awake_t that are said again */
+#define FAILED_WATCH 10000 /* ticks for which a fail_t makes competitors */
+#define HANDED_WATCH 3000  /* ticks for which an old head watches on */
+#define UNKNOWN_ARMS 3000  /* ticks after which competitors may contend where it is not known how the target moves */
+#define PRINCE_LEAD 0.8f   /* s, in which a prince learns that it is prince */
+#define DOG_WAIT 2500      /* ticks after the prince was due */
+#define DOG_HASTE 1.2f     /* times the largest of the last speeds is what the target may do */
+#define DOG_SPEED_MPS 6.0f /* ... at least */
+#define UNGUARDED 15000    /* ticks for which a head without watchdog waits after the prince was due */
+#define KEPT 20000         /* ticks for which a row is kept after that */
+#define SLOWEST_MPS 1.0f   /* a velocity below is none */
+#define SPEED_STEPS 4.0f   /* that a speed is told in, a m/s */
 
 static int16_t to_i16(mh_real value) { return (int16_t)mh_clamp(value, INT16_MIN + 1.0f, INT16_MAX - 1.0f); }
-
-static mh_real speed_of(const struct mh_prince_row *row) { return hypotf(row->vx_cmps, row->vy_cmps) * 0.01f; }
 
 static struct mh_place fix_of(const struct mh_prince_row *row)
 {
@@ -95,16 +93,15 @@ void mh_prince_remind(struct mh_prince *p, struct mh_prince_row *row)
 
 static void say_fail(struct mh_prince *p, const struct mh_prince_row *row)
 {
-    const struct mh_message message = {
-        .kind = MH_MESSAGE_FAIL,
-        .as.fail = {.sender = (int32_t)p->node->id,
-                    .target = (int32_t)row->target,
-                    .generation = (int16_t)row->generation,
-                    .time_ms = (int32_t)(row->fixed ? row->found : p->time),
-                    .x_mm = row->fixed ? row->x_mm : p->node->place.x_mm,
-                    .y_mm = row->fixed ? row->y_mm : p->node->place.y_mm,
-                    .vx_cmps = row->vx_cmps,
-                    .vy_cmps = row->vy_cmps}};
+    const struct mh_message message = {.kind = MH_MESSAGE_FAIL,
+                                       .as.fail = {.sender = (int32_t)p->node->id,
+                                                   .target = (int32_t)row->target,
+                                                   .generation = (int16_t)row->generation,
+                                                   .time_ms = (int32_t)(row->fixed ? row->found : p->time),
+                                                   .x_mm = row->fixed ? row->x_mm : p->node->place.x_mm,
+                                                   .y_mm = row->fixed ? row->y_mm : p->node->place.y_mm,
+                                                   .vx_cmps = row->vx_cmps,
+                                                   .vy_cmps = row->vy_cmps}};
     mh_prince_send(p, &message);
 }
 
@@ -149,7 +146,7 @@ static void note_speed(struct mh_prince_row *row, const struct mh_place *place, 
 static void take_fix(struct mh_prince_row *row, const struct mh_estimate *estimate)
 {
     const struct mh_place place = mh_place_from_offset(&estimate->origin, estimate->position);
-    const bool moves = hypotf(estimate->velocity.x, estimate->velocity.y) >= SLOWEST_MPS;
+    const bool moves = mh_sqrt(mh_squared(estimate->velocity.x) + mh_squared(estimate->velocity.y)) >= SLOWEST_MPS;
     note_speed(row, &place, row->asked);
     row->fixed = true;
     row->found = row->asked;
@@ -165,7 +162,7 @@ static void take_fix(struct mh_prince_row *row, const struct mh_estimate *estima
 static void name_prince(struct mh_prince *p, struct mh_prince_row *row)
 {
     const struct mh_prince_config *config = p->config;
-    const mh_real speed_mps = speed_of(row);
+    const mh_real speed_mps = mh_prince_speed(row);
     row->prince = MH_BROADCAST;
     row->enters = p->time;
     row->arms = speed_mps == 0                        ? p->time + UNKNOWN_ARMS
@@ -174,13 +171,12 @@ static void name_prince(struct mh_prince *p, struct mh_prince_row *row)
     if (speed_mps == 0 || config->election != MH_PRINCE_NAMED) {
         return;
     }
-    const struct mh_strips strips = mh_strips(config->sensing_range_m, config->margin_m, config->outer_m,
-                                              (mh_real)row->extent_cm * 0.01f);
+    const struct mh_strips strips =
+        mh_strips(config->sensing_range_m, config->margin_m, config->outer_m, (mh_real)row->extent_cm * 0.01f);
     const struct mh_prince_rule rule = {config->step_m, PRINCE_LEAD, config->farthest};
     const struct mh_place fix = fix_of(row);
-    const struct mh_course course = {
-        .head = mh_place_relative(&p->node->place, &fix),
-        .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
+    const struct mh_course course = {.head = mh_place_relative(&p->node->place, &fix),
+                                     .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
     struct mh_prince_choice best = {.found = false};
     for (uint8_t i = 0; i < p->neighbours.count; i++) {
         const struct mh_neighbour *neighbour = &p->neighbours.list[i];

@@ -51,6 +51,9 @@ void mh_prince_sample(struct mh_prince *p, struct mh_prince_row *row, uint8_t wa
 
 /* ---- prince_watch.c ---- */
 
+/* How fast the target goes, m/s; 0: unknown. */
+mh_real mh_prince_speed(const struct mh_prince_row *row);
+
 /* What the row's target adds to the energy p->value, as predicted; *share of it (1: all) and the number of other targets that have one -> *others, both may be NULL. */
 mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *row, mh_real *share, uint8_t *others);
 

@@ -204,7 +204,8 @@ void mh_prince_close(struct mh_prince *p, struct mh_prince_row *row)
         return;
     }
     mh_prince_discard(p, row);
-    const int32_t left = mh_prince_is_set(row, MH_PRINCE_QUIET) ? mh_ticks_between(p->time, row->due[MH_PRINCE_QUIET]) : 0;
+    const int32_t left =
+        mh_prince_is_set(row, MH_PRINCE_QUIET) ? mh_ticks_between(p->time, row->due[MH_PRINCE_QUIET]) : 0;
     if (left < RETRY_WATCH) {
         mh_prince_set(row, MH_PRINCE_QUIET, p->time + RETRY_WATCH);
     }
@@ -224,7 +225,8 @@ void mh_prince_close(struct mh_prince *p, struct mh_prince_row *row)
 static bool yields(const struct mh_prince *p, const struct mh_prince_row *row, const mh_locate_t *locate)
 {
     const int16_t ahead = mh_prince_ahead((uint16_t)locate->generation, (uint16_t)(row->generation + 1u));
-    return ahead > 0 || mh_prince_is_first((mh_tick)locate->time_ms, (mh_node_id)locate->sender, row->asked, p->node->id);
+    return ahead > 0 ||
+           mh_prince_is_first((mh_tick)locate->time_ms, (mh_node_id)locate->sender, row->asked, p->node->id);
 }
 
 /* A target that was not known here, or not by that name. */
@@ -282,7 +284,7 @@ void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
     if (mh_q20_to_real(p->value) < 1 || energy < LEAST_SHARE || row->state == MH_PRINCE_LOCATE) {
         return;
     }
-    const mh_real distance_m = sqrtf(p->config->loudness_m2 / energy);
+    const mh_real distance_m = mh_sqrt(p->config->loudness_m2 / energy);
     row->value = p->value;
     mh_prince_set(row, MH_PRINCE_REPLY,
                   p->time + SLOT * (mh_tick)(distance_m / SLOT_M) + mh_prince_wait(p, SLOT_SPREAD));

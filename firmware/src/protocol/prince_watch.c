@@ -1,19 +1,25 @@
 #include "prince_node.h"
 
 #include "motehound/decomposition.h"
+#include "motehound/time_window.h"
 
 #define AFTER_OUT 3000      /* ticks for which a watcher stays when the target should be out of range */
 #define LEAST_WATCH 2000    /* ticks, of a watcher */
 #define UNKNOWN_WATCH 15000 /* ... where it is not known how the target moves */
 #define LONGEST_WATCH 300000
-#define KEPT 20000          /* ticks for which a row is kept after that */
-#define REGENT_WAIT 1000    /* ticks after the prince is due ... */
-#define REGENT_SPREAD 500   /* ... and up to so many more, ... */
-#define BORDER_WAIT 300     /* ... and these in the border */
-#define OTHERS_WAIT 200     /* ticks in which somebody else may ask first */
-#define QUERY_REST 200      /* ticks after the window of a query that was heard, until the next */
-#define SLACK_M 10.0f       /* that a target may be off where it is expected */
-#define EXPLAINED 1.5f      /* times the energy expected of the targets that are known, and what is heard is one more */
+#define KEPT 20000        /* ticks for which a row is kept after that */
+#define REGENT_WAIT 1000  /* ticks after the prince is due ... */
+#define REGENT_SPREAD 500 /* ... and up to so many more, ... */
+#define BORDER_WAIT 300   /* ... and these in the border */
+#define OTHERS_WAIT 200   /* ticks in which somebody else may ask first */
+#define QUERY_REST 200    /* ticks after the window of a query that was heard, until the next */
+#define SLACK_M 10.0f     /* that a target may be off where it is expected */
+#define EXPLAINED 1.5f    /* times the energy expected of the targets that are known, and what is heard is one more */
+
+mh_real mh_prince_speed(const struct mh_prince_row *row)
+{
+    return mh_sqrt(mh_squared((mh_real)row->vx_cmps) + mh_squared((mh_real)row->vy_cmps)) * 0.01f;
+}
 
 /* Where the target is expected now, relative to this node, m. */
 static struct mh_vec2 expected(const struct mh_prince *p, const struct mh_prince_row *row)
@@ -64,9 +70,8 @@ static mh_real explained(const struct mh_prince *p, const struct mh_prince_row *
         if (row != own && row->state != MH_PRINCE_FREE && row->fixed) {
             const struct mh_vec2 at = expected(p, row);
             const mh_real drift_mps = row->vx_cmps == 0 && row->vy_cmps == 0 ? 2 * SLACK_M : 2;
-            const mh_real nearer_m =
-                slack_m > 0 ? slack_m + drift_mps * mh_seconds_between(row->found, p->time) : 0;
-            const mh_real distance_m = sqrtf(mh_squared(at.x) + mh_squared(at.y)) - nearer_m;
+            const mh_real nearer_m = slack_m > 0 ? slack_m + drift_mps * mh_seconds_between(row->found, p->time) : 0;
+            const mh_real distance_m = mh_sqrt(mh_squared(at.x) + mh_squared(at.y)) - nearer_m;
             sum += p->config->loudness_m2 * row->members / mh_squared(mh_max(distance_m, 1));
         }
     }
@@ -86,7 +91,7 @@ bool mh_prince_is_new(const struct mh_prince *p)
 /* The target may be within range, by where it was. */
 static bool is_in_time(const struct mh_prince *p, const struct mh_prince_row *row)
 {
-    const mh_real speed_mps = hypotf(row->vx_cmps, row->vy_cmps) * 0.01f;
+    const mh_real speed_mps = mh_prince_speed(row);
     const mh_tick slack = (mh_tick)(SLACK_M * 1000.0f / mh_max(speed_mps, 1));
     return !mh_tick_before(p->time, row->in - slack) && !mh_tick_before(row->out + slack, p->time);
 }
@@ -165,8 +170,8 @@ void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct m
     const struct mh_strips strips = mh_strips(config->sensing_range_m, config->margin_m, config->outer_m, extent_m);
     const struct mh_place fix = {row->x_mm, row->y_mm, 0};
     const struct mh_vec2 node = mh_place_relative(&p->node->place, &fix);
-    const struct mh_course course = {
-        .head = head, .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
+    const struct mh_course course = {.head = head,
+                                     .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
     enum mh_node_class as = mh_node_class(&strips, &course, node);
     row->is_prince = row->prince == p->node->id;
     row->arms = arms;
@@ -175,8 +180,8 @@ void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct m
     } else if (row->prince == MH_BROADCAST && (as == MH_NODE_INNER || as == MH_NODE_BORDER)) {
         as = MH_NODE_COMPETITOR;
     } else if (as == MH_NODE_INNER || as == MH_NODE_BORDER) {
-        row->arms = row->enters + REGENT_WAIT + mh_prince_wait(p, REGENT_SPREAD) +
-                    (as == MH_NODE_BORDER ? BORDER_WAIT : 0);
+        row->arms =
+            row->enters + REGENT_WAIT + mh_prince_wait(p, REGENT_SPREAD) + (as == MH_NODE_BORDER ? BORDER_WAIT : 0);
     }
     row->as = (uint8_t)as;
     set_passage(p, row, node, as == MH_NODE_OUTER ? strips.outer_m : strips.border_m);

@@ -1,0 +1,73 @@
+#include "prince_node.h"
+
+#define DECIDE_WAIT 150   /* ticks after the back-offs of all, ... */
+#define DECIDE_SPREAD 200 /* ... and up to so many more, until the strongest asks */
+#define HOLD 750          /* ticks for which who has lost does not compete, ... */
+#define HOLD_SPREAD 500   /* ... and up to so many more */
+
+void mh_prince_contend(struct mh_prince *p, struct mh_prince_row *row)
+{
+    if (p->config->election == MH_PRINCE_TIMESTAMP) {
+        mh_prince_detect(p, row);
+        return;
+    }
+    row->contenders = 0;
+    row->value = p->value;
+    row->best = p->node->id;
+    row->best_value = p->value;
+    row->best_time = p->time;
+    mh_prince_plan(p, row, MH_PRINCE_ACT_CONTEND, mh_prince_wait(p, p->config->contest));
+}
+
+void mh_prince_say_compete(struct mh_prince *p, struct mh_prince_row *row)
+{
+    if (p->config->election == MH_PRINCE_TIMESTAMP) {
+        mh_prince_say_detection(p, row);
+        return;
+    }
+    const mh_tick decides = row->best_time + p->config->contest + DECIDE_WAIT + mh_prince_wait(p, DECIDE_SPREAD);
+    if (row->contenders < MH_PRINCE_CONTENDERS) {
+        const struct mh_message message = {.kind = MH_MESSAGE_COMPETE,
+                                           .as.compete = {.sender = (int32_t)p->node->id,
+                                                          .target = (int32_t)row->target,
+                                                          .generation = (int16_t)(uint16_t)(row->generation + 1u),
+                                                          .time_ms = (int32_t)row->best_time,
+                                                          .x_mm = p->node->place.x_mm,
+                                                          .y_mm = p->node->place.y_mm,
+                                                          .value_q20 = row->value}};
+        mh_prince_send(p, &message);
+    }
+    mh_prince_plan(p, row, MH_PRINCE_ACT_DECIDE, decides - p->time);
+}
+
+void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row)
+{
+    if (p->config->election == MH_PRINCE_TIMESTAMP) {
+        mh_prince_decide_first(p, row);
+    } else if (row->best == p->node->id) {
+        mh_prince_ask(p, row, MH_LOCATE_COMPETITION);
+    } else {
+        row->hold = p->time + HOLD + mh_prince_wait(p, HOLD_SPREAD);
+    }
+}
+
+void mh_prince_hear_compete(struct mh_prince *p, const mh_compete_t *compete)
+{
+    struct mh_prince_row *row = mh_prince_find(p, (uint32_t)compete->target);
+    if (!row || !mh_prince_is_fresh(p, (mh_tick)compete->time_ms)) {
+        return;
+    }
+    if (mh_prince_ahead((uint16_t)compete->generation, row->generation) <= 0) {
+        mh_prince_remind(p, row);
+        return;
+    }
+    if (row->act != MH_PRINCE_ACT_CONTEND && row->act != MH_PRINCE_ACT_DECIDE) {
+        return;
+    }
+    const mh_node_id sender = (mh_node_id)compete->sender;
+    row->contenders++;
+    if (compete->value_q20 > row->best_value || (compete->value_q20 == row->best_value && sender < row->best)) {
+        row->best = sender;
+        row->best_value = compete->value_q20;
+    }
+}
