@@ -8,21 +8,26 @@
 #include <stdlib.h>
 
 /* All keys of the scenario but those that are lists and empty, which a scenario leaves out. */
+static void leave_out_empty(json_t *object)
+{
+    const char *name;
+    json_t *value;
+    void *following;
+    json_object_foreach_safe(object, following, name, value)
+    {
+        if (json_is_array(value) && json_array_size(value) == 0) {
+            json_object_del(object, name);
+        }
+    }
+}
+
 static char *scenario_text(const struct scenario *scenario)
 {
     json_t *whole = scenario_json(scenario);
-    const char *section_name, *name;
-    json_t *section, *value;
-    void *following;
-    json_object_foreach(whole, section_name, section)
-    {
-        json_object_foreach_safe(section, following, name, value)
-        {
-            if (json_is_array(value) && json_array_size(value) == 0) {
-                json_object_del(section, name);
-            }
-        }
-    }
+    const char *name;
+    json_t *section;
+    leave_out_empty(whole);
+    json_object_foreach(whole, name, section) { leave_out_empty(section); }
     char *text = whole ? json_dumps(whole, JSON_REAL_PRECISION(17)) : NULL;
     json_decref(whole);
     return text;

@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void setUp(void) {}
@@ -45,7 +46,8 @@ static void numbers(void)
     TEST_ASSERT_GREATER_THAN_size_t(9, rows);
 }
 
-static struct point strat(int64_t side, uint64_t seed, size_t index)
+/* The caller frees the nodes. */
+static struct deployment strata(int64_t side, uint64_t seed)
 {
     struct scenario scenario;
     struct deployment deployment;
@@ -56,10 +58,16 @@ static struct point strat(int64_t side, uint64_t seed, size_t index)
     scenario.network.grid = side;
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, deployment_make(&deployment, &scenario, seed, error, sizeof error), error);
     TEST_ASSERT_EQUAL_size_t((size_t)(side * side), deployment.count);
+    scenario_free(&scenario);
+    return deployment;
+}
+
+static struct point strat(int64_t side, uint64_t seed, size_t index)
+{
+    struct deployment deployment = strata(side, seed);
     TEST_ASSERT_LESS_THAN_size_t(deployment.count, index);
     const struct point place = {deployment.nodes[index].x_m, deployment.nodes[index].y_m};
     deployment_free(&deployment);
-    scenario_free(&scenario);
     return place;
 }
 
@@ -91,10 +99,38 @@ static void places(void)
     TEST_ASSERT_GREATER_THAN_size_t(29, rows);
 }
 
+/* The share of places, 40 m from the border and farther, with three nodes within 40 m, of three seeds: published to three digits. */
+static void coverage(void)
+{
+    static const struct {
+        int64_t side;
+        double share;
+    } wanted[] = {{23, 0.549}, {26, 0.815}, {34, 0.999}};
+    for (size_t k = 0; k < sizeof wanted / sizeof wanted[0]; k++) {
+        unsigned places = 0, covered = 0;
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            const struct deployment deployment = strata(wanted[k].side, seed);
+            for (double x_m = 40; x_m <= 960; x_m += 20) {
+                for (double y_m = 40; y_m <= 960; y_m += 20) {
+                    unsigned near = 0;
+                    for (size_t i = 0; i < deployment.count && near < 3; i++) {
+                        near += hypot(deployment.nodes[i].x_m - x_m, deployment.nodes[i].y_m - y_m) <= 40;
+                    }
+                    places++;
+                    covered += near == 3;
+                }
+            }
+            free(deployment.nodes);
+        }
+        TEST_ASSERT_TRUE(fabs((double)covered / places - wanted[k].share) < 0.015);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(numbers);
     RUN_TEST(places);
+    RUN_TEST(coverage);
     port_exit(UNITY_END() > 0);
 }
