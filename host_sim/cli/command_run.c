@@ -32,8 +32,9 @@ static const char help[] =
     "  --help           this text\n"
     "\n"
     "The results do not depend on where the motes live (docs/workers.md).\n"
-    "DIR gets summary.json, runs.csv, track.csv, nodes.csv and scenario.json; whole, or after an error or an\n"
-    "interrupt not at all (with --sweep: each DIR/VALUE).\n";
+    "DIR gets summary.json, runs.csv, track.csv, nodes.csv and scenario.json, of targets that are heard truth.csv,\n"
+    "of the protocol `prince` watch.csv, of fixed clusters local.csv; whole, or after an error or an interrupt not\n"
+    "at all (with --sweep: each DIR/VALUE).\n";
 
 struct run_options {
     const char *scenario, *out, *bus_url;

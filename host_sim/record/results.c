@@ -51,7 +51,7 @@ int results_open(struct results *results, const char *out, const char *scenario_
     fputs(
         "run,target,time_s,x_m,y_m,raw_x_m,raw_y_m,sd_m,true_x_m,true_y_m,vx_mps,vy_mps,cov_xx_m2,cov_xy_m2,cov_yy_m2,"
         "measurements,arrival_time_s,true_at_arrival_x_m,true_at_arrival_y_m,flags,head,sink_x_m,sink_y_m,states,rate,"
-        "true_rate,number,mode,members,extent_m\n",
+        "true_rate,number,mode,members,extent_m,of_0,of_1,of_2,of_3\n",
         results->track);
     return 0;
 }
@@ -98,6 +98,9 @@ static void put_track(FILE *file, unsigned run, const motehound_track_t *track, 
     put_number(file, number_of(track->number));
     fprintf(file, ",%ld,%ld", (long)track->mode, (long)track->members);
     put_number(file, track->members > 1 ? track->extent_m : none);
+    for (size_t i = 0; i < sizeof track->of / sizeof track->of[0]; i++) {
+        put_number(file, track->of[i] != 0 ? (double)(uint32_t)track->of[i] : none);
+    }
     fputc('\n', file);
 }
 
@@ -193,9 +196,10 @@ static int put_watches(struct results *results, const struct recorder *recorder,
     return 0;
 }
 
-static int put_truths(struct results *results, const struct recorder *recorder, char *error, size_t error_size)
+static int put_truths(struct results *results, const struct scenario *scenario, const struct recorder *recorder,
+                      char *error, size_t error_size)
 {
-    if (recorder->targets < 2) { /* beside its estimates is enough */
+    if (recorder->targets < 2 && scenario->sensor.quantity != QUANTITY_SOUND) { /* beside its estimates is enough */
         return 0;
     }
     if (begin_file(results, &results->truth, "truth.csv", "run,time_s,target,x_m,y_m,vx_mps,vy_mps\n", error,
@@ -277,7 +281,7 @@ int results_add(struct results *results, uint64_t seed, const struct scenario *s
     }
     if (put_locals(results, recorder, error, error_size) != 0 ||
         put_watches(results, recorder, error, error_size) != 0 ||
-        put_truths(results, recorder, error, error_size) != 0 ||
+        put_truths(results, scenario, recorder, error, error_size) != 0 ||
         (results->run_count == 0 && put_nodes(results, recorder, error, error_size) != 0) ||
         (results->log != NULL && take_log(results, error, error_size) != 0)) {
         return -1;

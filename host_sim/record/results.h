@@ -1,13 +1,13 @@
 /* The files of one or many runs: summary.json, runs.csv, track.csv, nodes.csv, scenario.json, of fixed clusters local.csv, of the protocol `prince`
- * watch.csv, of several targets truth.csv and, with a log, events.lcm. Runs are added in their order, whatever order they ended in, so the same runs give the same bytes.
+ * watch.csv, of targets that are heard truth.csv and, with a log, events.lcm. Runs are added in their order, whatever order they ended in, so the same runs give the same bytes.
  *
  * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the
  * "mean", "std" (divisor n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics
  * over all estimates of all runs together, which is also the "mean" of a metric that is defined over runs (metrics.h). track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
  * coordinate, sqrt((cov_xx + cov_yy) / 2); sink_x_m, sink_y_m are what the sink of clusters had of it at that instant; number is that
- * of the true target that it is compared with, extent_m that of a group. Fields that do not apply are empty. nodes.csv: where the motes of the first
+ * of the true target that it is compared with, extent_m that of a group and of_0 ... the identifiers of its targets. Fields that do not apply are empty. nodes.csv: where the motes of the first
  * run stand. local.csv: of fixed clusters, one row for whatever each of them had by itself when it told the sink. watch.csv: one row for
- * each new head of a target: who it is, who is to follow it and when, and where the target was then. truth.csv: where each of several targets was at every sampling
+ * each new head of a target: who it is, who is to follow it and when, and where the target was then. truth.csv: where each target was at every sampling
  * instant. scenario.json: the scenario as it was simulated; none for a recording. */
 #ifndef MOTEHOUND_SIM_RESULTS_H
 #define MOTEHOUND_SIM_RESULTS_H

@@ -17,6 +17,7 @@ TRACK_COLUMNS = ("run", "target", "time_s", "x_m", "y_m", "raw_x_m", "raw_y_m", 
 OPTIONAL_COLUMNS = (
     *("vx_mps", "vy_mps", "cov_xx_m2", "cov_xy_m2", "cov_yy_m2", "measurements", "arrival_time_s"),
     *("head", "sink_x_m", "sink_y_m", "states", "rate", "true_rate", "number", "mode", "members", "extent_m"),
+    *("of_0", "of_1", "of_2", "of_3"),
 )
 STATISTICS = ("mean", "std", "median", "p95", "n")
 
@@ -123,6 +124,11 @@ class Output:
     def is_search(self) -> bool:
         """Whether the motes of a simulation measure a gas that the wind brings from a leak."""
         return bool(self.scenario) and self.scenario.sections.get("sensor", {}).get("quantity") == "gas"
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether the motes of a simulation hear their targets."""
+        return bool(self.scenario) and self.scenario.sections.get("sensor", {}).get("quantity") == "sound"
 
     @property
     def is_fixed(self) -> bool:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from . import cluster_figures, figures, output, ranged_figures, search_figures, sweep_figures
+from . import cluster_figures, figures, output, ranged_figures, search_figures, sweep_figures, target_figures
 from .failure import Failure
 from .figures import Picture
 from .output import Output, Sweep
@@ -127,6 +127,21 @@ HEADLINES_OF_CLUSTERS = (
     ("claimed_over_rmse", "claimed over true RMSE", ""),
 )
 
+HEADLINES_OF_TARGETS = (
+    ("position_error_m", "mean error", "m"),
+    ("error_over_crlb", "error over its bound", ""),
+    ("success", "runs that kept all targets apart", "%"),
+    ("track_lost", "runs that lost a target", "%"),
+    ("identity_swaps", "identifiers exchanged a run", ""),
+    ("group_centroid_error_m", "mean error of groups", "m"),
+    ("merge_delay_s", "until a group is one", "s"),
+    ("split_delay_s", "until its parts are", "s"),
+    ("messages_per_cluster", "messages for a position", ""),
+    ("messages_per_cluster_all", "with hand-overs and wake-ups", ""),
+    ("longest_gap_m", "longest way without a position", "m"),
+    ("double_heads", "generations with two heads", "%"),
+)
+
 FACTS_OF_CONCENTRATIONS = (
     ("speed", "source", "speed_mps", " m/s"),
     ("relative noise", "sensor", "relative_noise", ""),
@@ -145,6 +160,16 @@ FACTS_OF_SEARCHES = (
     ("noise of a sample", "sensor", "noise_ppm", " ppm"),
     ("network", "network", "protocol", ""),
 )
+FACTS_OF_TARGETS = (
+    ("ways", "source", "path", ""),
+    ("targets", "target", "count", ""),
+    ("speed", "source", "speed_mps", " m/s"),
+    ("sensing range", "sensor", "range_m", " m"),
+    ("election", "protocol", "election", ""),
+    ("separation", "tracker", "separation", ""),
+    ("groups", "tracker", "groups", ""),
+    ("network", "network", "protocol", ""),
+)
 FACTS_OF_CLUSTERS = (
     ("rule", "fusion", "rule", ""),
     ("reports every", "fusion", "report_s", " s"),
@@ -155,12 +180,16 @@ FACTS_OF_CLUSTERS = (
 def headlines(results: Output) -> tuple[tuple[str, str, str], ...]:
     if results.is_search:
         return HEADLINES_OF_SEARCHES
+    if results.is_heard:
+        return HEADLINES_OF_TARGETS
     return HEADLINES_OF_CLUSTERS if results.is_fixed else HEADLINES
 
 
 def facts_of_kind(results: Output) -> tuple[tuple[str, str, str, str], ...]:
     if results.is_search:
         return FACTS_OF_SEARCHES
+    if results.is_heard:
+        return FACTS_OF_TARGETS
     if results.is_fixed:
         return FACTS_OF_CLUSTERS
     return FACTS_OF_RANGES if results.is_ranged else FACTS_OF_CONCENTRATIONS
@@ -229,6 +258,11 @@ def pictures(results: Output) -> list[Picture]:
         drawn = [search_figures.walk_picture(results), search_figures.bound_picture(results)]
         drawn += [figures.error_picture(results)]
         return [picture for picture in drawn if picture]
+    if results.is_heard:
+        drawn = [target_figures.field_picture(results), target_figures.heads_picture(results)]
+        drawn += [target_figures.modes_picture(results), figures.error_picture(results)]
+        drawn += [figures.distribution_picture(results)]
+        return [picture for picture in drawn if picture]
     if results.is_fixed:
         drawn = [cluster_figures.field_picture(results), cluster_figures.error_picture(results)]
         drawn += [cluster_figures.consistency_picture(results), figures.distribution_picture(results)]
@@ -239,6 +273,26 @@ def pictures(results: Output) -> list[Picture]:
         drawn = [figures.field_picture(results), figures.track_picture(results, figures.typical_run(results))]
     drawn += [figures.error_picture(results), figures.distribution_picture(results), ranged_figures.work_picture(results)]
     return [picture for picture in drawn if picture]
+
+
+def target_rows(results: Output) -> list[dict[str, str]]:
+    """What became of each target, of runs that have some to tell apart."""
+    if not results.is_heard:
+        return []
+    return [
+        {
+            "number": str(fate.number),
+            "colour": target_figures.colour(fate.number),
+            "found": f"{fate.found} of {fate.runs}",
+            "lost": str(fate.lost),
+            "swapped": str(fate.swapped),
+            "identifiers": number(fate.identifiers / fate.found if fate.found else math.nan),
+            "estimates": f"{fate.estimates:,}",
+            "grouped": number(100.0 * fate.grouped / fate.estimates if fate.estimates else math.nan),
+            "error": number(fate.error_m),
+        }
+        for fate in target_figures.fates(results)
+    ]
 
 
 def network_pictures(results: Output) -> list[Picture]:
@@ -299,6 +353,8 @@ def render(found: Output | Sweep) -> str:
         columns=columns,
         middle_value=f"{sweep.values[len(sweep.values) // 2]:g}" if sweep else "",
         pictures=pictures(middle),
+        targets=target_rows(middle),
+        lost_m=number(target_figures.LOST_M),
         network=network_pictures(middle),
         statistics=statistics(middle),
         has_pooled=bool(middle.summary.get("pooled")),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from logs import targets_run
 from motehound_tools import metrics, output
 from motehound_tools.scenario import Scenario
 
@@ -73,7 +74,7 @@ def write_output(folder: Path, runs: int = 3, samples: int = 20, error_m: float 
                 raw = true + 3.0 * error_m * random.standard_normal(2)
                 table.writerow(
                     [run, 0, time, x, y, *raw, error_m, *true, 0.5, 0.5, error_m**2, 0.0, error_m**2, 12, time - 1.0]
-                    + ["", "", "", 2, 0.0, 0.0, 0, 0, 0, ""]
+                    + ["", "", "", 2, 0.0, 0.0, 0, 0, 0, "", "", "", "", ""]
                 )
     (folder / "runs.csv").write_text("run,seed\n" + "".join(f"{run},{run}\n" for run in range(runs)))
     (folder / "summary.json").write_text(
@@ -102,6 +103,40 @@ def write_output(folder: Path, runs: int = 3, samples: int = 20, error_m: float 
     (folder / "summary.json").write_text(
         json.dumps({"scenario": "small", "seed": 0, "runs": runs, "version": "test", "metrics": summary})
     )
+    return folder
+
+
+def write_targets(folder: Path) -> Path:
+    """The same of three targets that are heard, from the messages of logs.targets_run, and a second run in which nothing was found."""
+    told = [one for _, one in targets_run()]
+    folder.mkdir(parents=True)
+
+    def write(name: str, kind: str, fields: dict[str, Any]) -> None:
+        with (folder / name).open("w", newline="") as stream:
+            table = csv.writer(stream)
+            table.writerow(["run", *fields])
+            for one in told:
+                if type(one).__name__ == kind:
+                    table.writerow([0, *(read(one) if callable(read) else getattr(one, read) for read in fields.values())])
+
+    def known(value: float) -> Any:
+        return value if value >= 0 else ""
+
+    plain = {name: name for name in ("time_s", "target", "x_m", "y_m")}
+    columns: dict[str, Any] = {name: lambda one: "" for name in (*output.TRACK_COLUMNS[1:], *output.OPTIONAL_COLUMNS)}
+    columns |= plain | {name: name for name in ("raw_x_m", "raw_y_m", "true_x_m", "true_y_m", "head", "mode", "members")}
+    columns |= {f"of_{i}": lambda one, i=i: one.of[i] or "" for i in range(4)}
+    columns |= {"number": lambda one: known(one.number), "extent_m": lambda one: one.extent_m or ""}
+    write("track.csv", "track_t", columns)
+    write("truth.csv", "truth_t", plain)
+    write("watch.csv", "watch_t", plain | {"number": lambda one: known(one.number), "head": "head", "prince": lambda one: known(one.prince)})
+    write("nodes.csv", "node_t", {name: name for name in ("node", "x_m", "y_m")})
+    given = sections(sensor__quantity="sound", source__path="scripted", field__width_m=220.0, field__height_m=220.0)
+    (folder / "scenario.json").write_text(json.dumps(given))
+    with (folder / "truth.csv").open("a") as stream:
+        stream.write("1,0,0,0,0\n1,20,0,200,0\n")
+    (folder / "runs.csv").write_text("run,seed\n0,0\n1,1\n")
+    (folder / "summary.json").write_text(json.dumps({"scenario": "three", "seed": 0, "runs": 2, "version": "test", "metrics": {}}))
     return folder
 
 

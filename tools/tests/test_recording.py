@@ -137,6 +137,8 @@ def test_every_target_has_its_colour_and_a_group_its_extent() -> None:
     assert together["heads"]["label"] == ["16 ×2", "50"] and together["paths"]["color"] == list(TARGETS[:3])
     assert (together["extents"]["radius"], together["extents"]["y"]) == ([6.0], [61.0]) and not apart["extents"]["x"]
     assert after["heads"]["label"] == ["16 ?", "33 ?", "50"]
+    middle = after["paths"]["xs"][1]  # of 33, which the group interrupts
+    assert middle[:4].tolist() == [19.0, 39.0, 59.0, 79.0] and np.isnan(middle[4]) and middle[5:].tolist() == [159.0]
     true = targets.truths(run, 9.5)
     assert true["truth"]["color"] == true["here"]["color"] == list(TARGETS[:3])
     assert true["here"]["x"] == [95.0] * 3 and true["here"]["y"] == pytest.approx([53.75, 66.25, 140.0])

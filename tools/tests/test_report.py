@@ -12,11 +12,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import write_output
+from conftest import write_output, write_targets
 from logs import program
 
-from motehound_tools import command, curves, experiment, figures, metrics, output, search_figures, sweep, sweep_figures
+from motehound_tools import (
+    command,
+    curves,
+    experiment,
+    figures,
+    metrics,
+    output,
+    search_figures,
+    sweep,
+    sweep_figures,
+    target_figures,
+)
 from motehound_tools.failure import Failure
+from motehound_tools.output import Output
 from motehound_tools.report import number
 from motehound_tools.scenario import Scenario
 
@@ -93,6 +105,30 @@ def test_page_of_searches_and_fixed_clusters(tmp_path: Path, scenario: str) -> N
     else:
         assert titles["Field"] == "Run 0: 4 clusters of 3, 4, 5, 6 nodes."
         assert {"Error against time", "Stated uncertainty", "Distribution"} < {*titles}
+
+
+def test_page_of_several_targets(tmp_path: Path) -> None:
+    titles = titles_of(write_targets(tmp_path / "out"))
+    assert {"Targets", "Heads", "Modes", "Error against time"} < {*titles}
+    assert "18 of 24 hand-overs" in titles["Heads"]  # not after 6 s, when there is no prince, nor when they meet and part
+
+
+def test_fates_of_several_targets(tmp_path: Path) -> None:
+    found = output.read(write_targets(tmp_path / "out"))
+    assert isinstance(found, Output)
+    low, middle, high = target_figures.fates(found)
+    assert [(one.found, one.runs) for one in (low, middle, high)] == [(1, 2), (1, 1), (1, 1)]
+    assert [(one.estimates, one.grouped) for one in (low, middle, high)] == [(10, 3), (10, 3), (10, 0)]
+    assert all((one.lost, one.swapped, one.identifiers) == (0, 0, 1) for one in (low, middle, high))
+    assert low.error_m == pytest.approx(2.0**0.5)
+    tracks = found.track
+    late = (tracks["target"] == 50) & (tracks["time_s"] > 4)
+    tracks["x_m"][late], tracks["target"][late] = -999.0, 77.0  # as if never found again, and another far off
+    tracks["number"][late] = np.nan
+    ends = (tracks["target"] == 33) & (tracks["time_s"] == 20)
+    tracks["y_m"][ends] = tracks["y_m"][(tracks["target"] == 16) & (tracks["time_s"] == 20)]
+    low, middle, high = target_figures.fates(found)
+    assert (low.swapped, middle.swapped, high.swapped, high.lost, high.estimates) == (0, 1, 0, 1, 2)
 
 
 def test_mean_concentration_far_from_the_source_falls_with_the_inverse_of_the_distance_downwind() -> None:
@@ -364,7 +400,7 @@ def _scenario_without_field(folder: Path) -> Path:
         (_broken_summary, "summary.json: not JSON"),
         (_summary_without_statistics, "`position_rmse_m` needs mean, std"),
         (_missing_column, "track.csv:1: the column `raw_x_m` is missing"),
-        (_short_row, "2 fields, expected 27"),
+        (_short_row, "2 fields, expected 31"),
         (_word_for_number, "track.csv:3: `x_m` is not a number"),
         (_scenario_without_field, "scenario.json: the key `field.width_m` is missing"),
     ],

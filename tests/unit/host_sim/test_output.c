@@ -272,8 +272,9 @@ static void several_targets_have_files_of_their_own(void)
     struct results results;
     struct scenario scenario;
     TEST_ASSERT_EQUAL_INT(0, scenario_init(&scenario));
-    motehound_track_t tracks[] = {{.time_s = 2, .target = 32, .number = 1, .x_m = 5, .members = 1, .extent_m = 3},
-                                  {.time_s = 2, .target = 16, .number = -1, .x_m = 6, .members = 2, .extent_m = 4}};
+    motehound_track_t tracks[] = {
+        {.time_s = 2, .target = 32, .number = 1, .x_m = 5, .members = 1, .extent_m = 3},
+        {.time_s = 2, .target = 16, .number = -1, .x_m = 6, .members = 2, .extent_m = 4, .of = {16, 48}}};
     motehound_track_t sinks[] = {{.time_s = 2, .target = 16, .x_m = 60}, {.time_s = 2, .target = 32, .x_m = 50}};
     motehound_watch_t watches[] = {
         {.time_s = 2,
@@ -315,7 +316,8 @@ static void several_targets_have_files_of_their_own(void)
     FILE *file = fopen(at("out/track.csv"), "r");
     TEST_ASSERT_NOT_NULL(file);
     char line[400];
-    const char *const ends[] = {"number,mode,members,extent_m\n", "50,0,0,0,,1,0,1,\n", "60,0,0,0,,,0,2,4\n"};
+    const char *const ends[] = {"number,mode,members,extent_m,of_0,of_1,of_2,of_3\n", "50,0,0,0,,1,0,1,,,,,\n",
+                                "60,0,0,0,,,0,2,4,16,48,,\n"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) { /* the sink's x_m is that of the same target */
         TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, file));
         TEST_ASSERT_TRUE(strlen(line) > strlen(ends[i]));

@@ -91,8 +91,10 @@ def tracks(run: Run, time: float) -> dict[str, Columns]:
     paths: Columns = {"xs": [], "ys": [], "color": []}
     for target in np.unique(rows["target"]):
         mine = rows[rows["target"] == target]
-        paths["xs"].append(mine["x"])
-        paths["ys"].append(mine["y"])
+        elsewhere = rows["time"][(rows["of"] == target).any(axis=1) & (rows["target"] != target)]
+        gaps = np.flatnonzero(np.diff(np.searchsorted(elsewhere, mine["time"], "right"))) + 1
+        paths["xs"].append(np.insert(mine["x"], gaps, np.nan))  # parted where it was in the group of another
+        paths["ys"].append(np.insert(mine["y"], gaps, np.nan))
         paths["color"].append(colour(run, target))
     ellipses: Columns = {"xs": [], "ys": [], "color": []}
     heads: Columns = {"x": [], "y": [], "error": [], "color": [], "label": []}
