@@ -90,6 +90,52 @@ MEANING = {
     **{f"energy_mj_{cause}": f"of this for {said}, mJ" for cause, (said, _) in figures.CAUSES.items()},
     **{f"energy_mj_per_sample_{cause}": f"of this for {said}, mJ" for cause, (said, _) in figures.CAUSES.items()},
     **{f"energy_mj_state_{state}": f"of this while {said}, mJ" for state, (said, _) in figures.STATES.items()},
+    "position_error_m": "mean error of the position of single targets, m",
+    "group_centroid_error_m": "mean error of the centroid of groups, m",
+    "success": "1 if no target was lost, or taken for another in the end, and no two tracks became one, else 0",
+    "identity_swaps": "exchanges of identifiers that would set right the tracks that are with each other's targets",
+    "swaps_claimed": "of these between tracks that do not say that they cannot tell who is who",
+    "unresolved": "1 if a target's track says so in the end, else 0",
+    "longest_gap_m": "the largest distance that a target travels between two fixes, or after the last, m",
+    "merge_delay_s": (
+        "mean time from when two targets come together (a chain of steps within 20 m) until they are in one "
+        "group, s"
+    ),
+    "split_delay_s": "the same from when they come apart (30 m) until they are not, s",
+    "extent_bias_m": "mean of the extent, less the root mean square distance of the targets from their centroid, m",
+    "mode_changes_per_min": "instants a minute at which a target becomes single, one of several or part of a group",
+    "spurious_splits_per_min": (
+        "instants a minute at which one loses targets that are together, of the time that targets are"
+    ),
+    "count_right": (
+        "sound, ideal network: share of the sampling instants at which as many targets are followed as there "
+        "are, those in groups with them"
+    ),
+    "apart_at_end": "1 if every target is followed by itself in the end, else 0",
+    "rmse_over_crlb": "position_rmse_m over fix_crlb_m",
+    "messages_per_cluster": "calls to localise, answers, and those of competitions, by fix",
+    "messages_per_cluster_all": (
+        "the same and the announcements of heads, their hand-overs and reports of failure, by fix"
+    ),
+    "double_heads": "share of the fixes after which two nodes were head for a while",
+    "targets_founded": "times that nodes took what they heard for a new target",
+    "fixes": "fixes, each of which begins a cluster",
+    "fixes_prince": "of these by the node that the head had chosen",
+    "fixes_regent": "of these by another in the place of a silent prince",
+    "fixes_retried": "calls to localise that were sent again",
+    "fixes_failed": "calls to localise that were given up",
+    "watchdogs": "times that a head missed its successor",
+    "relays": "reports of failure passed on",
+    "awakes_repeated": "announcements of a head repeated for who had not heard them",
+    "targets_given_up": "targets that their head, or who looked for them last, gave up",
+    "targets_evicted": "times that a node's table had no room for a target, and the first that was to leave it went",
+    "prince_refused": "messages with absurd content, or of no time about now",
+    "groups_merged": "times that two targets went on as a group",
+    "groups_split": "times that a group fell into parts",
+    "fix_crlb_m": (
+        "the Cramer-Rao bound of position_rmse_m for fixes from the samples of one instant, of all nodes that "
+        "detect a target, m"
+    ),
     "events": "that motes handled: readings, frames, alarms",
     "windows": "of simulated time that the motes were run through together",
 }
@@ -129,10 +175,11 @@ HEADLINES_OF_CLUSTERS = (
 
 HEADLINES_OF_TARGETS = (
     ("position_error_m", "mean error", "m"),
-    ("error_over_crlb", "error over its bound", ""),
+    ("rmse_over_crlb", "RMSE over its bound", ""),
     ("success", "runs that kept all targets apart", "%"),
     ("track_lost", "runs that lost a target", "%"),
     ("identity_swaps", "identifiers exchanged a run", ""),
+    ("unresolved", "runs that end with doubts who is who", "%"),
     ("group_centroid_error_m", "mean error of groups", "m"),
     ("merge_delay_s", "until a group is one", "s"),
     ("split_delay_s", "until its parts are", "s"),
