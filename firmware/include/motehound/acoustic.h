@@ -46,6 +46,9 @@
 #error "MH_ACOUSTIC_HEARD_MAX must be 3 to 1000: a place takes three, and the strongest are found by insertion"
 #endif
 
+/* Of a speed in a saved track, m/s. */
+#define MH_ACOUSTIC_SPEED_UNIT 0.25f
+
 /* Bytes of a saved track. */
 #define MH_ACOUSTIC_HEADER_BYTES 40
 #define MH_ACOUSTIC_SAVED_MAX (MH_ACOUSTIC_HEADER_BYTES + MH_GROUP_BYTES(MH_GROUP_MAX))
@@ -78,25 +81,29 @@ struct mh_acoustic_config {
     struct mh_group_config group; /* nominal NONE */
 };
 
+/* What is known of a target, or of a group's centroid: all that a saved track holds. */
+struct mh_acoustic_track {
+    struct mh_kalman filter; /* x, y, vx, vy, relative to the origin, at ... */
+    struct mh_place origin;
+    mh_tick updated;       /* ... the time of the last fix */
+    struct mh_group group; /* which targets, at least one */
+    uint8_t speeds[3];     /* between the last fixes, quarters of m/s, the newest first */
+    uint8_t mode;          /* enum mh_target_mode */
+    uint8_t refused;       /* fixes in a row outside the gate */
+    bool moving;           /* there have been two fixes: the velocity means something */
+};
+
 struct mh_acoustic_kind;
 
 /* The state, in the header so that it can be allocated statically; its members are the tracker's own. */
 struct mh_acoustic {
     const struct mh_acoustic_kind *kind; /* which of the trackers */
     struct mh_acoustic_config config;
-    struct mh_kalman filter; /* x, y, vx, vy; of the centroid in a group */
-    struct mh_place origin;
+    struct mh_acoustic_track track;
     mh_tick time;           /* of the last step */
-    mh_tick updated;        /* of the filter: of the last fix */
-    uint8_t speeds[3];      /* between the last fixes, quarters of m/s, the newest first */
-    uint8_t mode;           /* enum mh_target_mode */
-    uint8_t refused;        /* fixes in a row outside the gate */
-    bool stepped, tracking; /* `time` is set; the filter has a track */
-    bool moving;            /* the filter's velocity means something */
-    bool split;             /* the last estimate has MH_ESTIMATE_SPLIT */
+    bool stepped, tracking; /* `time` is set; there is a track */
     uint8_t others_count;
     struct mh_saved_track others[MH_TARGETS_MAX]; /* reckoned with in the next step */
-    struct mh_group group;                        /* which targets, at least one */
 };
 
 extern const struct mh_tracker mh_tracker_acoustic, mh_tracker_dm, mh_tracker_ml;

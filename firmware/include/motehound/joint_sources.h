@@ -27,7 +27,6 @@ struct mh_source_fix {
     struct mh_sym2 covariance; /* of that */
     struct mh_sym2
         information; /* of the measurements alone, the other sources being as uncertain as they are: positive semidefinite */
-    struct mh_vec2 pull; /* information x (where the measurements alone would have it - position) */
 };
 
 /* From the priors' means, or from starts[0 .. count) unless that is NULL -> fixes[0 .. count). Energies below 1/4 count as that. At most MH_JOINT_ITERATIONS, each with

@@ -16,7 +16,7 @@ struct normal {
     mh_real right[UNKNOWNS_MAX];
 };
 
-static bool finite(struct mh_vec2 v) { return mh_finite(v.x) && mh_finite(v.y); }
+static bool is_finite(struct mh_vec2 v) { return mh_finite(v.x) && mh_finite(v.y); }
 
 static enum mh_status invert(const struct mh_sym2 *a, struct mh_sym2 *inverse)
 {
@@ -124,14 +124,12 @@ static enum mh_status iterate(const struct mh_sound *sound, const struct mh_hear
     return MH_OK;
 }
 
-/* Covariance and what the measurements alone say of source k, from the inverse of the matrix. With A the prior's information and S that of the measurements once the others
- * are eliminated, (S + A) is the inverse of the covariance, and S (z - p) = A (p - prior) where the measurements alone would have z. */
-static enum mh_status conclude(const struct mh_source *source, size_t k, const mh_real *inverse,
-                               struct mh_source_fix *fix)
+/* Covariance and what the measurements alone say of a source: the inverse of its part of the inverse, which is with the other sources eliminated, less the prior's
+ * information. */
+static enum mh_status conclude(size_t k, const mh_real *inverse, struct mh_source_fix *fix)
 {
     const int x = (int)(2 * k), y = x + 1;
     const struct mh_sym2 prior = fix->information;
-    const struct mh_vec2 off = {fix->position.x - source->position.x, fix->position.y - source->position.y};
     const struct mh_sym2 covariance = {inverse[MH_PACKED(x, x)], inverse[MH_PACKED(x, y)], inverse[MH_PACKED(y, y)]};
     struct mh_sym2 both;
     const enum mh_status status = invert(&covariance, &both);
@@ -139,7 +137,6 @@ static enum mh_status conclude(const struct mh_source *source, size_t k, const m
         return status;
     }
     fix->covariance = covariance;
-    fix->pull = times(&prior, off);
     fix->information.xx = mh_max(both.xx - prior.xx, 0);
     fix->information.yy = mh_max(both.yy - prior.yy, 0);
     const mh_real most = mh_sqrt(fix->information.xx * fix->information.yy);
@@ -159,14 +156,14 @@ enum mh_status mh_joint_sources(const struct mh_sound *sound, const struct mh_he
         return MH_ERR_TOO_FEW;
     }
     for (size_t i = 0; i < heard_count; i++) {
-        if (!finite(heard[i].place) || !mh_finite(heard[i].energy)) {
+        if (!is_finite(heard[i].place) || !mh_finite(heard[i].energy)) {
             return MH_ERR_NOT_FINITE;
         }
     }
     struct mh_source_fix found[MH_SOURCES_MAX];
     for (size_t k = 0; k < count; k++) {
         found[k].position = starts ? starts[k] : sources[k].position;
-        if (!finite(sources[k].position) || !finite(found[k].position)) {
+        if (!is_finite(sources[k].position) || !is_finite(found[k].position)) {
             return MH_ERR_NOT_FINITE;
         }
         const enum mh_status status = invert(&sources[k].covariance, &found[k].information);
@@ -184,7 +181,7 @@ enum mh_status mh_joint_sources(const struct mh_sound *sound, const struct mh_he
     }
     mh_cholesky_invert((int)(2 * count), normal.matrix);
     for (size_t k = 0; k < count; k++) {
-        const enum mh_status status = conclude(&sources[k], k, normal.matrix, &found[k]);
+        const enum mh_status status = conclude(k, normal.matrix, &found[k]);
         if (status != MH_OK) {
             return status;
         }

@@ -87,26 +87,6 @@ static void information_of_one_source(void)
     TEST_ASSERT_FLOAT_WITHIN(0.01f * fix.covariance.yy, both.xx / determinant, fix.covariance.yy);
 }
 
-/* Where the measurements alone would have it: the same by `pull` as with hardly a prior. */
-static void the_priors_part_can_be_taken_out(void)
-{
-    const struct mh_vec2 truth = {50, 40};
-    const struct mh_source close = {{51, 41.5f}, {4, 1, 3}}, anywhere = {{51, 41.5f}, {1e6f, 0, 1e6f}};
-    struct mh_source_fix with, without;
-    hear(&truth, 1);
-    TEST_ASSERT_EQUAL_INT(MH_OK, mh_joint_sources(&sound, heard, NODES, &close, NULL, 1, &with));
-    TEST_ASSERT_EQUAL_INT(MH_OK, mh_joint_sources(&sound, heard, NODES, &anywhere, NULL, 1, &without));
-    const struct mh_sym2 *S = &with.information;
-    const mh_real determinant = S->xx * S->yy - S->xy * S->xy;
-    const mh_real x = with.position.x + (S->yy * with.pull.x - S->xy * with.pull.y) / determinant;
-    const mh_real y = with.position.y + (S->xx * with.pull.y - S->xy * with.pull.x) / determinant;
-    TEST_ASSERT_FLOAT_WITHIN(0.01f, truth.x, without.position.x);
-    TEST_ASSERT_FLOAT_WITHIN(0.01f, truth.y, without.position.y);
-    TEST_ASSERT_GREATER_THAN_FLOAT(0.15f, mh_abs(with.position.y - truth.y)); /* the prior pulls */
-    TEST_ASSERT_FLOAT_WITHIN(0.1f, without.position.x, x);
-    TEST_ASSERT_FLOAT_WITHIN(0.1f, without.position.y, y);
-}
-
 /* One that nobody hears stays where it was expected, as uncertain as it was. */
 static void a_source_that_nobody_hears(void)
 {
@@ -183,7 +163,6 @@ int main(void)
     RUN_TEST(two_sources_half_a_range_apart);
     RUN_TEST(as_many_as_there_is_room_for);
     RUN_TEST(information_of_one_source);
-    RUN_TEST(the_priors_part_can_be_taken_out);
     RUN_TEST(a_source_that_nobody_hears);
     RUN_TEST(what_is_refused);
     RUN_TEST(degenerate_places_and_energies);

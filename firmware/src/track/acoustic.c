@@ -1,0 +1,537 @@
+#include "acoustic_parts.h"
+
+#include <string.h>
+
+#define GATE_PATIENCE 2
+
+enum { MOTION = 4 }; /* states x, y, vx, vy */
+
+void mh_acoustic_config_default(struct mh_acoustic_config *config, mh_real sensing_range_m)
+{
+    const struct mh_acoustic_config nominal = {
+        .sound = {.loudness_m2 = sensing_range_m * sensing_range_m, .source_sd = 0.19f, .background_sd = 0.05f},
+        .sensing_range_m = sensing_range_m,
+        .reach_m = sensing_range_m + 15.0f,
+        .variant = MH_CIRCLES_UNIFORM,
+        .intervals = 8,
+        .separation = MH_SEPARATION_JOINT,
+        .share_range_m = 3.0f * sensing_range_m,
+        .filtered = true,
+        .mirror_check = true,
+        .acceleration_psd = 0.5f,
+        .speed_mps = 10.0f,
+        .fix_sd_m = 3.0f,
+        .coast_s = 10.0f,
+    };
+    *config = nominal;
+    mh_group_config_default(&config->group, MH_GROUP_NONE);
+}
+
+static bool valid(const struct mh_acoustic_config *config)
+{
+    return mh_sound_valid(&config->sound) && (config->sound.source_sd > 0 || config->sound.background_sd > 0) &&
+           mh_within(config->sensing_range_m, 1.0f, 1e4f) && mh_within(config->reach_m, 1.0f, 1e5f) &&
+           config->variant <= MH_CIRCLES_JOINT && config->strongest != 1 && config->separation <= MH_SEPARATION_JOINT &&
+           mh_within(config->share_range_m, 1.0f, 1e5f) && mh_within(config->acceleration_psd, 1e-6f, 1e6f) &&
+           mh_within(config->speed_mps, 0.1f, 1e3f) && mh_within(config->fix_sd_m, 0.1f, 1e3f) &&
+           mh_within(config->coast_s, 0.1f, 3600.0f) && mh_group_config_check(&config->group) == MH_OK;
+}
+
+static enum mh_status begin(void *state, const struct mh_acoustic_kind *kind, const void *given, mh_tick interval)
+{
+    struct mh_acoustic *acoustic = state;
+    const struct mh_acoustic_config *config = given;
+    if (acoustic == NULL || config == NULL || interval < 1 || interval > 3600000u || !valid(config)) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (kind->locate_jointly == NULL &&
+        (config->separation == MH_SEPARATION_JOINT || config->group.mode != MH_GROUP_NONE)) {
+        return MH_ERR_ARGUMENT;
+    }
+    memset(acoustic, 0, sizeof *acoustic);
+    acoustic->kind = kind;
+    acoustic->config = *config;
+    mh_group_single(&acoustic->track.group, 0);
+    return MH_OK;
+}
+
+static enum mh_status init_gn(void *state, const void *config, mh_tick interval)
+{
+    return begin(state, &mh_acoustic_kind_gn, config, interval);
+}
+
+static enum mh_status init_dm(void *state, const void *config, mh_tick interval)
+{
+    return begin(state, &mh_acoustic_kind_dm, config, interval);
+}
+
+static enum mh_status init_ml(void *state, const void *config, mh_tick interval)
+{
+    return begin(state, &mh_acoustic_kind_ml, config, interval);
+}
+
+/* ---- the filter ---- */
+
+/* Position and velocity with their covariances: of each, and of both. */
+static enum mh_status set(struct mh_acoustic_track *track, struct mh_vec2 position, const struct mh_sym2 *covariance,
+                          struct mh_vec2 velocity, const struct mh_sym2 *velocities, mh_real both)
+{
+    const struct mh_sym2 *C = covariance, *V = velocities;
+    const mh_real x[MOTION] = {position.x, position.y, velocity.x, velocity.y};
+    const mh_real P[MH_PACKED_SIZE(MOTION)] = {C->xx, C->xy,        C->yy,        both * C->xx, both * C->xy,
+                                               V->xx, both * C->xy, both * C->yy, V->xy,        V->yy};
+    return mh_kalman_init(&track->filter, MOTION, x, P);
+}
+
+/* A first fix: its velocity is anything. */
+static enum mh_status set_first(const struct mh_acoustic_config *config, const struct mh_acoustic_fix *fix,
+                                struct mh_acoustic_track *track)
+{
+    const mh_real variance = mh_squared(config->speed_mps);
+    const struct mh_sym2 velocities = {variance, 0, variance};
+    const struct mh_vec2 rest = {0, 0};
+    track->moving = false;
+    track->refused = 0;
+    memset(track->speeds, 0, sizeof track->speeds);
+    return set(track, fix->position, &fix->covariance, rest, &velocities, 0);
+}
+
+/* The velocity between the fix and the one before: the filter forgets what it had. */
+static enum mh_status set_chord(const struct mh_acoustic_fix *fix, struct mh_vec2 before, mh_real seconds,
+                                struct mh_acoustic_track *track)
+{
+    const mh_real rate = 1.0f / seconds;
+    struct mh_vec2 velocity = {(fix->position.x - before.x) * rate, (fix->position.y - before.y) * rate};
+    const mh_real speed = mh_sqrt(mh_squared(velocity.x) + mh_squared(velocity.y));
+    const mh_real scale = speed > MH_ACOUSTIC_FASTEST_MPS ? MH_ACOUSTIC_FASTEST_MPS / speed : 1.0f;
+    const mh_real twice = 2.0f * rate * rate;
+    const struct mh_sym2 *C = &fix->covariance;
+    const struct mh_sym2 velocities = {twice * C->xx, twice * C->xy, twice * C->yy};
+    velocity.x *= scale;
+    velocity.y *= scale;
+    return set(track, fix->position, C, velocity, &velocities, rate);
+}
+
+/* As two scalars with independent errors: y, and x less what y says of it. */
+static enum mh_status update(struct mh_acoustic_track *track, const struct mh_acoustic_fix *fix)
+{
+    const struct mh_sym2 *R = &fix->covariance;
+    const mh_real l = R->xy / R->yy;
+    const mh_real along_y[MOTION] = {0, 1}, across[MOTION] = {1, -l};
+    enum mh_status status =
+        mh_kalman_update(&track->filter, along_y, fix->position.y - track->filter.x[1], R->yy, NULL);
+    if (status == MH_OK) {
+        const mh_real expected = track->filter.x[0] - l * track->filter.x[1];
+        status = mh_kalman_update(&track->filter, across, fix->position.x - l * fix->position.y - expected,
+                                  R->xx - l * R->xy, NULL);
+    }
+    return status;
+}
+
+static void note_speed(struct mh_acoustic_track *track, struct mh_vec2 before, mh_real seconds)
+{
+    const struct mh_vec2 now = mh_acoustic_position(track);
+    const mh_real speed = mh_sqrt(mh_squared(now.x - before.x) + mh_squared(now.y - before.y)) / seconds;
+    const mh_real units = mh_min(speed, MH_ACOUSTIC_FASTEST_MPS) / MH_ACOUSTIC_SPEED_UNIT;
+    track->speeds[2] = track->speeds[1];
+    track->speeds[1] = track->speeds[0];
+    track->speeds[0] = (uint8_t)(units + 0.5f);
+}
+
+/* The fix, `seconds` after the last one at `before`, goes into the predicted track. MH_NONE: it is left out. */
+static enum mh_status take_fix(const struct mh_acoustic_config *config, const struct mh_acoustic_scene *scene,
+                               struct mh_vec2 before, mh_real seconds, const struct mh_acoustic_fix *fix,
+                               struct mh_acoustic_track *track)
+{
+    enum mh_status status;
+    const bool outside = mh_acoustic_surprise(track, fix) > MH_ACOUSTIC_GATE;
+    if (config->filtered && outside && !scene->alone && track->refused < GATE_PATIENCE) {
+        return MH_NONE;
+    }
+    if (!config->filtered || outside) {
+        status = set_chord(fix, before, seconds, track);
+    } else {
+        status = update(track, fix);
+    }
+    if (status == MH_OK) {
+        note_speed(track, before, seconds);
+        track->moving = true;
+        track->refused = 0;
+    }
+    return status;
+}
+
+/* ---- a step ---- */
+
+static void state_identity(const struct mh_acoustic_track *track, struct mh_estimate *estimate)
+{
+    const struct mh_group *group = &track->group;
+    estimate->target = group->targets[0].target;
+    estimate->members = group->count;
+    estimate->extent = mh_group_extent(group);
+    estimate->mode = track->mode;
+    for (uint8_t i = 0; i < group->count && group->count > 1; i++) {
+        estimate->of[i] = group->targets[i].target;
+    }
+    if (group->unresolved) {
+        estimate->flags |= MH_ESTIMATE_UNRESOLVED;
+    }
+}
+
+/* The track, predicted to `time`. */
+static void answer(const struct mh_acoustic_track *track, mh_tick time, struct mh_estimate *estimate)
+{
+    struct mh_estimate stated = {
+        .origin = track->origin,
+        .time = time,
+        .position = mh_acoustic_position(track),
+        .velocity = mh_acoustic_velocity(track),
+        .covariance = mh_acoustic_covariance(track),
+        .states = MOTION,
+    };
+    mh_real P[MH_PACKED_SIZE(MOTION)];
+    mh_kalman_covariance(&track->filter, P);
+    memcpy(stated.covariance_more, P + MH_PACKED_SIZE(2), sizeof stated.covariance_more);
+    stated.raw = stated.stored = stated.position;
+    stated.stored_velocity = stated.velocity;
+    state_identity(track, &stated);
+    *estimate = stated;
+}
+
+/* A fix for the scene -> fix. */
+static enum mh_status locate(const struct mh_acoustic *acoustic, struct mh_acoustic_scene *scene, bool jointly,
+                             mh_real seconds, struct mh_acoustic_fix *fix)
+{
+    const struct mh_acoustic_config *config = &acoustic->config;
+    if (jointly) {
+        return scene->own_count > 0 ? acoustic->kind->locate_jointly(config, scene, seconds, fix) : MH_NONE;
+    }
+    if (scene->heard_count < 2) {
+        return MH_NONE;
+    }
+    const enum mh_status status = acoustic->kind->locate(config, scene->heard, scene->heard_count, fix);
+    if (status == MH_OK && acoustic->tracking && config->mirror_check) {
+        mh_acoustic_check_mirror(config, scene, fix);
+        if (acoustic->kind->reconsider && mh_acoustic_surprise(&scene->own, fix) > MH_ACOUSTIC_GATE) {
+            acoustic->kind->reconsider(config, scene, fix);
+        }
+    }
+    return status;
+}
+
+/* The fix into the track -> scene->own, as it is then. */
+static enum mh_status follow(const struct mh_acoustic *acoustic, mh_tick time, const struct mh_acoustic_fix *fix,
+                             struct mh_acoustic_scene *scene)
+{
+    const struct mh_acoustic_track *last = &acoustic->track;
+    if (!acoustic->tracking) {
+        scene->own.updated = time;
+        return set_first(&acoustic->config, fix, &scene->own);
+    }
+    const mh_real seconds = mh_seconds_between(last->updated, time);
+    return take_fix(&acoustic->config, scene, mh_acoustic_position(last), seconds, fix, &scene->own);
+}
+
+static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
+                           struct mh_estimate *estimate)
+{
+    struct mh_acoustic *acoustic = state;
+    if (acoustic == NULL || estimate == NULL || (measurements == NULL && count > 0)) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (acoustic->stepped && !mh_tick_before(acoustic->time, time)) {
+        return MH_ERR_TIME;
+    }
+    struct mh_acoustic_scene scene;
+    struct mh_acoustic_track *track = &acoustic->track;
+    acoustic->time = time;
+    acoustic->stepped = true;
+    scene.own = *track;
+    acoustic->tracking = acoustic->tracking && mh_seconds_between(track->updated, time) <= acoustic->config.coast_s &&
+                         mh_acoustic_advance(&scene.own, acoustic->config.acceleration_psd, time) == MH_OK;
+    const bool tracking = acoustic->tracking;
+    if (!tracking && count > 0) {
+        scene.own.origin = measurements[0].place;
+        scene.own.filter.x[0] = scene.own.filter.x[1] = 0;
+    }
+    mh_acoustic_look_around(acoustic, time, &scene);
+    const bool jointly =
+        tracking && (scene.own.group.count > 1 || (!scene.alone && acoustic->config.separation == MH_SEPARATION_JOINT));
+    const mh_real seconds = tracking ? mh_seconds_between(track->updated, time) : 0;
+    const bool expected = tracking && mh_acoustic_exchanged(&scene, seconds);
+    mh_acoustic_listen(acoustic, jointly, measurements, count, &scene);
+    acoustic->others_count = 0;
+
+    struct mh_acoustic_fix fix = {.flags = 0};
+    enum mh_status status = locate(acoustic, &scene, jointly, seconds, &fix);
+    if (status == MH_OK) {
+        status = follow(acoustic, time, &fix, &scene);
+    }
+    if (status != MH_OK) {
+        /* without a fix, or with one that is left out, what is kept of the track stays as it was */
+        if (!tracking) {
+            return MH_NONE;
+        }
+        track->mode = scene.own.mode;
+        if (status == MH_NONE && fix.covariance.xx > 0) {
+            track->refused++;
+        }
+        if (mh_acoustic_advance(&scene.own, acoustic->config.acceleration_psd, time) != MH_OK) {
+            return MH_NONE;
+        }
+        answer(&scene.own, time, estimate);
+        estimate->flags |= MH_ESTIMATE_COASTED;
+        return MH_OK;
+    }
+    const bool merge = acoustic->kind->approach && acoustic->config.group.mode != MH_GROUP_NONE &&
+                       acoustic->kind->approach(&acoustic->config, &scene);
+    scene.own.group.unresolved = scene.own.group.unresolved || expected || mh_acoustic_exchanged(&scene, seconds);
+    *track = scene.own;
+    acoustic->tracking = true;
+    answer(track, time, estimate);
+    estimate->raw = fix.position;
+    estimate->measurements = (uint16_t)scene.heard_count;
+    estimate->flags = (uint16_t)(estimate->flags | fix.flags | MH_ESTIMATE_REFRESHED |
+                                 (tracking ? 0 : MH_ESTIMATE_STARTED) | (merge ? MH_ESTIMATE_MERGE : 0));
+    estimate->near = merge ? track->group.near : 0;
+    return MH_OK;
+}
+
+static enum mh_status predict(const void *state, mh_tick time, struct mh_estimate *estimate)
+{
+    const struct mh_acoustic *acoustic = state;
+    if (acoustic == NULL || estimate == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!acoustic->tracking) {
+        return MH_NONE;
+    }
+    struct mh_acoustic_track track = acoustic->track;
+    const enum mh_status status = mh_acoustic_advance(&track, acoustic->config.acceleration_psd, time);
+    if (status != MH_OK) {
+        return status == MH_ERR_TIME ? status : MH_NONE;
+    }
+    answer(&track, time, estimate);
+    estimate->flags |= MH_ESTIMATE_COASTED;
+    return MH_OK;
+}
+
+/* ---- from head to head, and beside others ---- */
+
+static enum mh_status save(const void *state, uint8_t *bytes, size_t *length)
+{
+    const struct mh_acoustic *acoustic = state;
+    if (acoustic == NULL || bytes == NULL || length == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!acoustic->tracking) {
+        return MH_NONE;
+    }
+    *length = mh_acoustic_write(&acoustic->track, bytes);
+    return MH_OK;
+}
+
+static void go_on(struct mh_acoustic *acoustic, const struct mh_acoustic_track *track)
+{
+    acoustic->track = *track;
+    acoustic->time = track->updated;
+    acoustic->stepped = acoustic->tracking = true;
+}
+
+static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
+{
+    struct mh_acoustic *acoustic = state;
+    struct mh_acoustic_track track;
+    if (acoustic == NULL || bytes == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    const enum mh_status status = mh_acoustic_read(&track, acoustic->track.group.targets[0].target, bytes, length);
+    if (status == MH_OK) {
+        go_on(acoustic, &track);
+    }
+    return status;
+}
+
+static void restart(void *state)
+{
+    struct mh_acoustic *acoustic = state;
+    acoustic->tracking = false;
+}
+
+static enum mh_status among(void *state, uint32_t target, const struct mh_saved_track *others, size_t count)
+{
+    struct mh_acoustic *acoustic = state;
+    struct mh_acoustic_track track;
+    if (acoustic == NULL || (others == NULL && count > 0)) {
+        return MH_ERR_ARGUMENT;
+    }
+    acoustic->others_count = 0;
+    acoustic->track.group.targets[0].target = target;
+    for (size_t i = 0; i < count; i++) {
+        if (mh_acoustic_read(&track, others[i].target, others[i].bytes, others[i].length) != MH_OK) {
+            return MH_ERR_CORRUPT;
+        }
+    }
+    for (size_t i = 0; i < count && acoustic->others_count < MH_TARGETS_MAX; i++) {
+        acoustic->others[acoustic->others_count++] = others[i];
+    }
+    return MH_OK;
+}
+
+enum mh_status mh_acoustic_begin(struct mh_acoustic *acoustic, uint32_t target, mh_tick time,
+                                 const struct mh_place *place, struct mh_vec2 velocity, mh_real position_sd_m,
+                                 mh_real velocity_sd_mps)
+{
+    if (acoustic == NULL || place == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!mh_finite(velocity.x) || !mh_finite(velocity.y)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    if (!mh_within(position_sd_m, 1e-3f, 1e5f) || !mh_within(velocity_sd_mps, 1e-3f, 1e5f) ||
+        !mh_coordinate_valid(place->x_mm) || !mh_coordinate_valid(place->y_mm)) {
+        return MH_ERR_ARGUMENT;
+    }
+    const struct mh_sym2 positions = {mh_squared(position_sd_m), 0, mh_squared(position_sd_m)};
+    const struct mh_sym2 velocities = {mh_squared(velocity_sd_mps), 0, mh_squared(velocity_sd_mps)};
+    const struct mh_vec2 here = {0, 0};
+    struct mh_acoustic_track track = {.origin = *place, .updated = time, .moving = true};
+    const enum mh_status status = set(&track, here, &positions, velocity, &velocities, 0);
+    if (status == MH_OK) {
+        mh_group_single(&track.group, target);
+        go_on(acoustic, &track);
+    }
+    return status;
+}
+
+enum mh_status mh_acoustic_begin_group(struct mh_acoustic *acoustic, uint32_t target, mh_tick time,
+                                       const struct mh_place *places, uint8_t count, struct mh_vec2 velocity,
+                                       mh_real position_sd_m, mh_real velocity_sd_mps)
+{
+    struct mh_vec2 members[MH_GROUP_MAX], centroid;
+    struct mh_group group;
+    if (places == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (count > MH_GROUP_MAX) {
+        return MH_ERR_CAPACITY;
+    }
+    for (uint8_t i = 0; i < count; i++) {
+        members[i] = mh_place_relative(&places[i], &places[0]);
+    }
+    enum mh_status status = mh_group_found(&group, target, members, count, &centroid);
+    if (status == MH_OK) {
+        const struct mh_place place = mh_place_from_offset(&places[0], centroid);
+        status = mh_acoustic_begin(acoustic, target, time, &place, velocity, position_sd_m, velocity_sd_mps);
+    }
+    if (status == MH_OK) {
+        acoustic->track.group = group;
+        acoustic->track.mode = count > 1 ? MH_TARGET_GROUP : MH_TARGET_SINGLE;
+    }
+    return status;
+}
+
+static enum mh_status join(void *state, const struct mh_saved_track *other)
+{
+    struct mh_acoustic *acoustic = state;
+    struct mh_acoustic_track second;
+    if (acoustic == NULL || other == NULL || other->bytes == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!acoustic->tracking) {
+        return MH_NONE;
+    }
+    if (mh_acoustic_read(&second, other->target, other->bytes, other->length) != MH_OK) {
+        return MH_ERR_CORRUPT;
+    }
+    struct mh_acoustic_track joined = acoustic->track;
+    if (mh_tick_before(second.updated, joined.updated) &&
+        mh_acoustic_advance(&second, acoustic->config.acceleration_psd, joined.updated) != MH_OK) {
+        return MH_ERR_CORRUPT;
+    }
+    const struct mh_vec2 from = mh_place_relative(&second.origin, &joined.origin), on = mh_acoustic_position(&second);
+    const struct mh_vec2 position = {from.x + on.x, from.y + on.y};
+    struct mh_vec2 centroid = mh_acoustic_position(&joined), velocity = {joined.filter.x[2], joined.filter.x[3]};
+    const struct mh_vec2 second_velocity = {second.filter.x[2], second.filter.x[3]};
+    const enum mh_status status =
+        mh_group_join(&joined.group, &centroid, &velocity, &second.group, position, second_velocity);
+    if (status != MH_OK) {
+        return status == MH_ERR_CAPACITY ? status : MH_ERR_CORRUPT;
+    }
+    joined.filter.x[0] = centroid.x;
+    joined.filter.x[1] = centroid.y;
+    joined.filter.x[2] = velocity.x;
+    joined.filter.x[3] = velocity.y;
+    joined.mode = MH_TARGET_GROUP;
+    acoustic->track = joined;
+    return MH_OK;
+}
+
+static enum mh_status part(const void *state, uint8_t number, uint32_t *target, uint8_t *bytes, size_t *length)
+{
+    const struct mh_acoustic *acoustic = state;
+    if (acoustic == NULL || target == NULL || bytes == NULL || length == NULL) {
+        return MH_ERR_ARGUMENT;
+    }
+    if (!acoustic->tracking) {
+        return MH_NONE;
+    }
+    const struct mh_vec2 velocity = {acoustic->track.filter.x[2], acoustic->track.filter.x[3]};
+    struct mh_acoustic_track own = acoustic->track;
+    struct mh_vec2 position, moving;
+    const enum mh_status status =
+        mh_group_part(&acoustic->track.group, &acoustic->config.group, mh_acoustic_position(&acoustic->track), velocity,
+                      number, &own.group, &position, &moving);
+    if (status != MH_OK) {
+        return MH_NONE;
+    }
+    own.filter.x[0] = position.x;
+    own.filter.x[1] = position.y;
+    own.filter.x[2] = moving.x;
+    own.filter.x[3] = moving.y;
+    own.mode = own.group.count > 1 ? MH_TARGET_GROUP : MH_TARGET_SPARSE;
+    *target = own.group.targets[0].target;
+    *length = mh_acoustic_write(&own, bytes);
+    return MH_OK;
+}
+
+const struct mh_tracker mh_tracker_acoustic = {
+    .name = "acoustic",
+    .state_size = sizeof(struct mh_acoustic),
+    .config_size = sizeof(struct mh_acoustic_config),
+    .init = init_gn,
+    .step = step,
+    .predict = predict,
+    .save = save,
+    .load = load,
+    .restart = restart,
+    .among = among,
+    .join = join,
+    .part = part,
+};
+
+const struct mh_tracker mh_tracker_dm = {
+    .name = "dm",
+    .state_size = sizeof(struct mh_acoustic),
+    .config_size = sizeof(struct mh_acoustic_config),
+    .init = init_dm,
+    .step = step,
+    .predict = predict,
+    .save = save,
+    .load = load,
+    .restart = restart,
+    .among = among,
+};
+
+const struct mh_tracker mh_tracker_ml = {
+    .name = "ml",
+    .state_size = sizeof(struct mh_acoustic),
+    .config_size = sizeof(struct mh_acoustic_config),
+    .init = init_ml,
+    .step = step,
+    .predict = predict,
+    .save = save,
+    .load = load,
+    .restart = restart,
+    .among = among,
+};

@@ -1,0 +1,186 @@
+#include "acoustic_parts.h"
+#include "motehound/bytes.h"
+
+enum { MOTION = 4 }; /* states x, y, vx, vy */
+
+#define VELOCITY_UNIT (1.0f / 256.0f)
+#define VELOCITY_MOST 127.0f
+#define LEAST_VARIANCE 1e-6f
+#define MOST_VARIANCE 1e12f
+
+/* The first byte: mode, refused, moving */
+#define MODE_MASK 3u
+#define REFUSED_SHIFT 2
+#define REFUSED_MASK 3u
+#define MOVING 16u
+#define KIND 0xa0u
+#define KIND_MASK 0xe0u
+
+/* The upper half of the number, rounded: 8 significant bits */
+static uint16_t half(mh_real value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return (uint16_t)((bits + 0x8000u) >> 16);
+}
+
+static mh_real whole(uint16_t half)
+{
+    const uint32_t bits = (uint32_t)half << 16;
+    mh_real value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static void put_velocity(uint8_t **at, mh_real velocity)
+{
+    const mh_real units = mh_clamp(velocity, -VELOCITY_MOST, VELOCITY_MOST) / VELOCITY_UNIT;
+    mh_put_u16(at, (uint16_t)(int16_t)(units < 0 ? units - 0.5f : units + 0.5f));
+}
+
+size_t mh_acoustic_write(const struct mh_acoustic_track *track, uint8_t *bytes)
+{
+    const struct mh_place place = mh_place_from_offset(&track->origin, mh_acoustic_position(track));
+    uint8_t *at = bytes;
+    *at++ = (uint8_t)(KIND | track->mode | (unsigned)track->refused << REFUSED_SHIFT | (track->moving ? MOVING : 0u));
+    mh_put_u32(&at, track->updated);
+    mh_put_u32(&at, (uint32_t)place.x_mm);
+    mh_put_u32(&at, (uint32_t)place.y_mm);
+    put_velocity(&at, track->filter.x[2]);
+    put_velocity(&at, track->filter.x[3]);
+    for (int i = 0; i < MH_PACKED_SIZE(MOTION); i++) {
+        mh_put_u16(&at, half(track->filter.ud[i]));
+    }
+    for (int i = 0; i < 3; i++) {
+        *at++ = track->speeds[i];
+    }
+    at += mh_group_write(&track->group, at);
+    return (size_t)(at - bytes);
+}
+
+/* The factors U and D are a covariance whatever they are rounded to, as long as it is none that is absurd. */
+static bool sane(const struct mh_kalman *filter)
+{
+    for (int i = 0; i < MH_PACKED_SIZE(MOTION); i++) {
+        if (!mh_finite(filter->ud[i])) {
+            return false;
+        }
+    }
+    for (uint8_t i = 0; i < MOTION; i++) {
+        if (!mh_within(filter->ud[MH_PACKED(i, i)], LEAST_VARIANCE * LEAST_VARIANCE, MOST_VARIANCE) ||
+            !mh_within(mh_kalman_variance(filter, i), LEAST_VARIANCE, MOST_VARIANCE)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+enum mh_status mh_acoustic_read(struct mh_acoustic_track *track, uint32_t target, const uint8_t *bytes, size_t length)
+{
+    const uint8_t *at = bytes;
+    size_t taken;
+    if (length < MH_ACOUSTIC_HEADER_BYTES || (bytes[0] & KIND_MASK) != KIND) {
+        return MH_ERR_CORRUPT;
+    }
+    struct mh_acoustic_track read = {.filter = {.n = MOTION, .moving = MOTION}};
+    const uint8_t first = *at++;
+    read.mode = (uint8_t)(first & MODE_MASK);
+    read.refused = (uint8_t)(first >> REFUSED_SHIFT & REFUSED_MASK);
+    read.moving = (first & MOVING) != 0;
+    read.updated = mh_get_u32(&at);
+    read.origin.x_mm = mh_get_i32(&at);
+    read.origin.y_mm = mh_get_i32(&at);
+    read.filter.x[2] = (mh_real)mh_get_i16(&at) * VELOCITY_UNIT;
+    read.filter.x[3] = (mh_real)mh_get_i16(&at) * VELOCITY_UNIT;
+    for (int i = 0; i < MH_PACKED_SIZE(MOTION); i++) {
+        read.filter.ud[i] = whole(mh_get_u16(&at));
+    }
+    for (int i = 0; i < 3; i++) {
+        read.speeds[i] = *at++;
+    }
+    if (read.mode > MH_TARGET_GROUP || !mh_coordinate_valid(read.origin.x_mm) ||
+        !mh_coordinate_valid(read.origin.y_mm) || !sane(&read.filter) ||
+        mh_group_read(&read.group, target, at, length - MH_ACOUSTIC_HEADER_BYTES, &taken) != MH_OK ||
+        taken != length - MH_ACOUSTIC_HEADER_BYTES) {
+        return MH_ERR_CORRUPT;
+    }
+    *track = read;
+    return MH_OK;
+}
+
+enum mh_status mh_acoustic_advance(struct mh_acoustic_track *track, mh_real acceleration_psd, mh_tick time)
+{
+    mh_real F[MOTION * MOTION];
+    mh_real Q[MH_PACKED_SIZE(MOTION)];
+    if (mh_tick_before(time, track->updated)) {
+        return MH_ERR_TIME;
+    }
+    if (time == track->updated) {
+        return MH_OK;
+    }
+    mh_kalman_constant_velocity(mh_seconds_between(track->updated, time), acceleration_psd, F, Q);
+    const enum mh_status status = mh_kalman_predict(&track->filter, F, Q);
+    if (status == MH_OK) {
+        track->updated = time;
+    }
+    return status;
+}
+
+struct mh_vec2 mh_acoustic_velocity(const struct mh_acoustic_track *track)
+{
+    struct mh_vec2 velocity = {track->filter.x[2], track->filter.x[3]};
+    const mh_real speed = mh_sqrt(mh_squared(velocity.x) + mh_squared(velocity.y));
+    mh_real scale = 1.0f;
+    if (!track->moving || speed < MH_ACOUSTIC_SLOWEST_MPS) {
+        scale = 0;
+    } else if (speed > MH_ACOUSTIC_FASTEST_MPS) {
+        scale = MH_ACOUSTIC_FASTEST_MPS / speed;
+    }
+    velocity.x *= scale;
+    velocity.y *= scale;
+    return velocity;
+}
+
+struct mh_sym2 mh_acoustic_covariance(const struct mh_acoustic_track *track)
+{
+    mh_real P[MH_PACKED_SIZE(2)];
+    mh_kalman_covariance_of(&track->filter, 2, P);
+    const struct mh_sym2 covariance = {P[0], P[1], P[2]};
+    return covariance;
+}
+
+static mh_real largest_speed(const struct mh_acoustic_track *track)
+{
+    uint8_t largest = 0;
+    for (int i = 0; i < 3; i++) {
+        largest = track->speeds[i] > largest ? track->speeds[i] : largest;
+    }
+    return (mh_real)largest * MH_ACOUSTIC_SPEED_UNIT;
+}
+
+mh_real mh_acoustic_largest_speed(const struct mh_acoustic *acoustic)
+{
+    return acoustic->tracking ? largest_speed(&acoustic->track) : 0;
+}
+
+enum mh_status mh_acoustic_look(uint32_t target, const uint8_t *bytes, size_t length, mh_tick time,
+                                struct mh_acoustic_summary *summary)
+{
+    struct mh_acoustic_track track;
+    if (bytes == NULL || summary == NULL || mh_acoustic_read(&track, target, bytes, length) != MH_OK) {
+        return MH_ERR_CORRUPT;
+    }
+    const struct mh_vec2 velocity = mh_acoustic_velocity(&track);
+    const mh_real seconds = mh_seconds_between(track.updated, time);
+    const struct mh_vec2 way = {seconds * velocity.x, seconds * velocity.y};
+    const struct mh_acoustic_summary found = {
+        .place = mh_place_from_offset(&track.origin, way),
+        .velocity = velocity,
+        .fixed = track.updated,
+        .largest_speed = largest_speed(&track),
+        .extent = mh_group_extent(&track.group),
+        .members = track.group.count,
+    };
+    *summary = found;
+    return MH_OK;
+}
