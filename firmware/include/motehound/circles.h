@@ -31,11 +31,11 @@ struct mh_vec2 mh_two_circles(const struct mh_circle *a, const struct mh_circle 
 /* The same, but for circles that cross the middle of their common chord. */
 struct mh_vec2 mh_two_circles_chord(const struct mh_circle *a, const struct mh_circle *b);
 
-/* Where two circles cross or touch, to 1e-5 of their size: that to the left of the way from a to b first. False, and nothing written, if they do not.
- * Two roots, one division. */
+/* Where two circles cross or touch, to 1e-6 of the sum of their radii: that to the left of the way from a to b first. False, and nothing written, if they do not.
+ * One root, one division. */
 bool mh_crossings(const struct mh_circle *a, const struct mh_circle *b, struct mh_vec2 crossings[2]);
 
-/* The point of three circles. `uniform`: at most 15 roots and 5 divisions. `cases` where nothing crosses: at most eight quadratics and 8 steps of Gauss-Newton. */
+/* The point of three circles. `uniform`: at most 6 roots and 4 divisions. `cases` where nothing crosses: at most eight quadratics and 8 steps of Gauss-Newton. */
 struct mh_vec2 mh_three_circles(const struct mh_circle circles[3], enum mh_circles_variant variant);
 
 /* The component-wise median of the points of all triples of 3 to 5 circles, variant uniform: mirrored points of single triples do not

@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #define COINCIDENT 1e-6f /* m: centres that are no farther apart show no direction */
-#define TOUCH 1e-6f      /* of the sum of the radii */
+#define TOUCH 1e-6f      /* of the square of the sum of the radii: less is rounding */
 #define COLLINEAR 1e-6f  /* of the square of the longer side */
 #define TOUCH_M 0.1f     /* m */
 #define FARTHEST 40.0f   /* m: a circle that touches all three is no larger */
@@ -23,69 +23,76 @@ static struct mh_vec2 middle(struct mh_vec2 a, struct mh_vec2 b)
     return m;
 }
 
-/* How two circles lie to each other: the unit vector u from the first centre to the second, and their distance. */
+/* How two circles lie to each other: the way d from the first centre to the second, and the square of its length. */
 struct pair {
     const struct mh_circle *a, *b;
-    struct mh_vec2 u;
-    mh_real apart, inverse; /* 1 / apart */
+    struct mh_vec2 way;
+    mh_real square;
 };
 
 /* False if the centres coincide. */
 static bool pair_of(const struct mh_circle *a, const struct mh_circle *b, struct pair *pair)
 {
-    const mh_real dx = b->centre.x - a->centre.x;
-    const mh_real dy = b->centre.y - a->centre.y;
-    const mh_real apart = mh_sqrt(dx * dx + dy * dy);
-    if (!(apart >= COINCIDENT)) {
-        return false;
-    }
-    const mh_real inverse = 1.0f / apart;
-    const struct pair p = {a, b, {dx * inverse, dy * inverse}, apart, inverse};
+    const struct mh_vec2 way = {b->centre.x - a->centre.x, b->centre.y - a->centre.y};
+    const struct pair p = {a, b, way, way.x * way.x + way.y * way.y};
     *pair = p;
-    return true;
+    return p.square >= COINCIDENT * COINCIDENT;
 }
 
-/* The point `along` u from the first centre. */
-static struct mh_vec2 on_line(const struct pair *pair, mh_real along)
+/* The point at a share of the way. */
+static struct mh_vec2 on_way(const struct pair *pair, mh_real share)
 {
-    const struct mh_vec2 p = {pair->a->centre.x + along * pair->u.x, pair->a->centre.y + along * pair->u.y};
+    const struct mh_vec2 p = {pair->a->centre.x + share * pair->way.x, pair->a->centre.y + share * pair->way.y};
     return p;
-}
-
-/* Where the common chord of two circles cuts the line through their centres. */
-static mh_real chord(const struct pair *pair)
-{
-    const mh_real difference = pair->a->radius - pair->b->radius;
-    const mh_real sum = pair->a->radius + pair->b->radius;
-    return 0.5f * (pair->apart + difference * sum * pair->inverse);
-}
-
-static bool meet(const struct pair *pair)
-{
-    const mh_real sum = pair->a->radius + pair->b->radius;
-    return pair->apart <= sum + TOUCH * sum && pair->apart >= mh_abs(pair->a->radius - pair->b->radius) - TOUCH * sum;
 }
 
 static struct mh_vec2 between(const struct pair *pair)
 {
     const mh_real ra = pair->a->radius;
     const mh_real rb = pair->b->radius;
-    if (pair->apart >= mh_abs(ra - rb)) {
-        return on_line(pair, 0.5f * (pair->apart + ra - rb));
-    }
-    return on_line(pair, 0.5f * (ra > rb ? pair->apart + ra + rb : pair->apart - ra - rb));
+    const mh_real apart = mh_sqrt(pair->square);
+    const mh_real gap = apart >= mh_abs(ra - rb) ? ra - rb : ra > rb ? ra + rb : -ra - rb;
+    return on_way(pair, 0.5f + 0.5f * gap / apart);
 }
 
-static void cross(const struct pair *pair, struct mh_vec2 crossings[2])
+/* The common chord of two circles: its middle, the way from there to its first end, and the square of that. */
+struct chord {
+    struct mh_vec2 foot, aside;
+    mh_real square;
+};
+
+/* False if the circles do not meet. */
+static bool chord_of(const struct pair *pair, struct chord *chord)
 {
-    const mh_real along = chord(pair);
-    const mh_real across = mh_sqrt(mh_max((pair->a->radius - along) * (pair->a->radius + along), 0));
-    const struct mh_vec2 foot = on_line(pair, along);
-    const struct mh_vec2 aside = {-across * pair->u.y, across * pair->u.x};
-    crossings[0].x = foot.x + aside.x;
-    crossings[0].y = foot.y + aside.y;
-    crossings[1].x = foot.x - aside.x;
-    crossings[1].y = foot.y - aside.y;
+    const mh_real sum = pair->a->radius + pair->b->radius;
+    const mh_real difference = pair->a->radius - pair->b->radius;
+    const mh_real largest = sum * sum;
+    const mh_real overlap = largest - pair->square;
+    const mh_real outside = pair->square - difference * difference;
+    const mh_real rounding = -TOUCH * largest;
+    if (overlap < rounding || outside < rounding) {
+        return false;
+    }
+    const mh_real half_inverse = 0.5f / pair->square;
+    const mh_real half = half_inverse * mh_sqrt(mh_max(overlap * outside, 0));
+    chord->foot = on_way(pair, 0.5f + half_inverse * sum * difference);
+    chord->aside.x = -half * pair->way.y;
+    chord->aside.y = half * pair->way.x;
+    chord->square = half * half * pair->square;
+    return true;
+}
+
+static struct mh_vec2 end_of(const struct chord *chord, bool second)
+{
+    struct mh_vec2 end = chord->foot;
+    if (second) {
+        end.x -= chord->aside.x;
+        end.y -= chord->aside.y;
+    } else {
+        end.x += chord->aside.x;
+        end.y += chord->aside.y;
+    }
+    return end;
 }
 
 struct mh_vec2 mh_two_circles(const struct mh_circle *a, const struct mh_circle *b)
@@ -97,49 +104,66 @@ struct mh_vec2 mh_two_circles(const struct mh_circle *a, const struct mh_circle 
 struct mh_vec2 mh_two_circles_chord(const struct mh_circle *a, const struct mh_circle *b)
 {
     struct pair pair;
+    struct chord chord;
     if (!pair_of(a, b, &pair)) {
         return a->centre;
     }
-    return meet(&pair) ? on_line(&pair, chord(&pair)) : between(&pair);
+    return chord_of(&pair, &chord) ? chord.foot : between(&pair);
+}
+
+/* The chord of two circles that are not concentric. */
+static bool common_chord(const struct mh_circle *a, const struct mh_circle *b, struct chord *chord)
+{
+    struct pair pair;
+    return pair_of(a, b, &pair) && chord_of(&pair, chord);
 }
 
 bool mh_crossings(const struct mh_circle *a, const struct mh_circle *b, struct mh_vec2 crossings[2])
 {
-    struct pair pair;
-    if (!pair_of(a, b, &pair) || !meet(&pair)) {
+    struct chord chord;
+    if (!common_chord(a, b, &chord)) {
         return false;
     }
-    cross(&pair, crossings);
+    crossings[0] = end_of(&chord, false);
+    crossings[1] = end_of(&chord, true);
     return true;
 }
 
-/* What a pair says to the variant uniform: where it crosses, or else its one point, twice. */
-static void candidates(const struct mh_circle *a, const struct mh_circle *b, struct mh_vec2 points[2])
+/* What a pair says to the variant uniform: its chord, or else its one point, as a chord without length. */
+static void chord_or_point(const struct mh_circle *a, const struct mh_circle *b, struct chord *chord)
 {
     struct pair pair;
-    if (!pair_of(a, b, &pair)) {
-        points[0] = points[1] = a->centre;
-    } else if (meet(&pair)) {
-        cross(&pair, points);
-    } else {
-        points[0] = points[1] = between(&pair);
+    const bool apart = pair_of(a, b, &pair);
+    if (!apart || !chord_of(&pair, chord)) {
+        const struct chord point = {apart ? between(&pair) : a->centre, {0, 0}, 0};
+        *chord = point;
     }
 }
 
-/* Which of two points is nearer to a circle; of equals the first, or `otherwise` the second. */
-static struct mh_vec2 nearer(const struct mh_vec2 points[2], const struct mh_circle *circle, bool otherwise)
+/* Which end of a chord is nearer to a circle; of equals the first, or `otherwise` the second. With p, q the ends' distances from its centre it is the
+ * farther one where p + q < 2 r; with f the middle of the chord from there and a half of the chord, where m = (p^2 + q^2) / 2 = f^2 + a^2 < 2 r^2 and
+ * (f . a)^2 > r^2 (m - r^2). */
+static struct mh_vec2 nearer(const struct chord *chord, const struct mh_circle *circle, bool otherwise)
 {
-    const mh_real first = mh_abs(distance(points[0], circle->centre) - circle->radius);
-    const mh_real second = mh_abs(distance(points[1], circle->centre) - circle->radius);
-    return (otherwise ? first < second : first <= second) ? points[0] : points[1];
+    const struct mh_vec2 f = {chord->foot.x - circle->centre.x, chord->foot.y - circle->centre.y};
+    const mh_real along = f.x * chord->aside.x + f.y * chord->aside.y;
+    if (along == 0) {
+        return end_of(chord, otherwise);
+    }
+    const mh_real r = circle->radius * circle->radius;
+    const mh_real excess = f.x * f.x + f.y * f.y + chord->square - r;
+    const bool within = excess < r && along * along > r * excess;
+    return end_of(chord, (along > 0) != within);
 }
 
 /* The centre of the incircle of a triangle -> its perimeter. */
 static mh_real incentre(struct mh_vec2 a, struct mh_vec2 b, struct mh_vec2 c, struct mh_vec2 *centre)
 {
+    const struct mh_vec2 ab = {b.x - a.x, b.y - a.y};
+    const struct mh_vec2 ac = {c.x - a.x, c.y - a.y};
     const mh_real to_a = distance(b, c);
-    const mh_real to_b = distance(c, a);
-    const mh_real to_c = distance(a, b);
+    const mh_real to_b = mh_sqrt(ac.x * ac.x + ac.y * ac.y);
+    const mh_real to_c = mh_sqrt(ab.x * ab.x + ab.y * ab.y);
     const mh_real perimeter = to_a + to_b + to_c;
     if (perimeter < 1e-9f) {
         *centre = a;
@@ -148,8 +172,8 @@ static mh_real incentre(struct mh_vec2 a, struct mh_vec2 b, struct mh_vec2 c, st
     const mh_real share = 1.0f / perimeter;
     const mh_real of_b = to_b * share;
     const mh_real of_c = to_c * share;
-    centre->x = a.x + of_b * (b.x - a.x) + of_c * (c.x - a.x);
-    centre->y = a.y + of_b * (b.y - a.y) + of_c * (c.y - a.y);
+    centre->x = a.x + of_b * ab.x + of_c * ac.x;
+    centre->y = a.y + of_b * ab.y + of_c * ac.y;
     return perimeter;
 }
 
@@ -253,13 +277,14 @@ static struct mh_vec2 least_squares(const struct mh_circle c[3])
 
 static struct mh_vec2 cases(const struct mh_circle c[3], bool joint)
 {
-    struct mh_vec2 crossings[3][2], points[3];
+    struct chord chords[3];
+    struct mh_vec2 points[3];
     int pairs = 0;
     const struct mh_circle *third = NULL;
     for (int i = 0; i < 3; i++) {
         const struct mh_circle *other = &c[(i + 2) % 3];
-        if (mh_crossings(&c[i], &c[(i + 1) % 3], crossings[pairs])) {
-            points[pairs] = nearer(crossings[pairs], other, false);
+        if (common_chord(&c[i], &c[(i + 1) % 3], &chords[pairs])) {
+            points[pairs] = nearer(&chords[pairs], other, false);
             third = other;
             pairs++;
         }
@@ -267,10 +292,10 @@ static struct mh_vec2 cases(const struct mh_circle c[3], bool joint)
     struct mh_vec2 p;
     if (pairs == 3) {
         mh_real least = incentre(points[0], points[1], points[2], &p);
-        for (int which = 0; joint && which < 8; which++) {
+        for (unsigned which = 0; joint && which < 8; which++) {
             struct mh_vec2 candidate;
-            const mh_real perimeter =
-                incentre(crossings[0][which & 1], crossings[1][which >> 1 & 1], crossings[2][which >> 2], &candidate);
+            const mh_real perimeter = incentre(end_of(&chords[0], which & 1U), end_of(&chords[1], which & 2U),
+                                               end_of(&chords[2], which & 4U), &candidate);
             if (perimeter < least) {
                 least = perimeter;
                 p = candidate;
@@ -283,22 +308,31 @@ static struct mh_vec2 cases(const struct mh_circle c[3], bool joint)
     }
     if (pairs == 1) {
         const struct mh_circle point = {points[0], 0};
-        struct pair line;
-        return pair_of(third, &point, &line) ? middle(on_line(&line, third->radius), points[0]) : points[0];
+        struct pair way; /* from the third circle's centre through the point */
+        return pair_of(third, &point, &way) ? middle(on_way(&way, third->radius / mh_sqrt(way.square)), points[0])
+                                            : points[0];
     }
     return touching(c, &p) ? p : least_squares(c);
 }
 
+static struct mh_vec2 uniform(const struct mh_circle c[3])
+{
+    struct chord chords[3];
+    for (int i = 0; i < 3; i++) {
+        chord_or_point(&c[i], &c[i < 2 ? i + 1 : 0], &chords[i]);
+    }
+    struct mh_vec2 p;
+    incentre(nearer(&chords[0], &c[2], false), nearer(&chords[1], &c[0], false), nearer(&chords[2], &c[1], false), &p);
+    return p;
+}
+
 struct mh_vec2 mh_three_circles(const struct mh_circle circles[3], enum mh_circles_variant variant)
 {
-    if (variant != MH_CIRCLES_UNIFORM) {
-        return cases(circles, variant == MH_CIRCLES_JOINT);
-    }
-    return mh_median_of_triples(circles, 3);
+    return variant == MH_CIRCLES_UNIFORM ? uniform(circles) : cases(circles, variant == MH_CIRCLES_JOINT);
 }
 
 /* The middle one of `count` numbers, which it sorts, or the mean of the middle two. */
-static mh_real median(mh_real *numbers, uint8_t count)
+static mh_real median_of(mh_real *numbers, uint8_t count)
 {
     for (uint8_t i = 1; i < count; i++) {
         const mh_real number = numbers[i];
@@ -308,18 +342,19 @@ static mh_real median(mh_real *numbers, uint8_t count)
         }
         numbers[at] = number;
     }
-    return 0.5f * (numbers[(count - 1) / 2] + numbers[count / 2]);
+    const mh_real upper = numbers[count / 2];
+    return count % 2 == 0 ? 0.5f * (numbers[count / 2 - 1] + upper) : upper;
 }
 
 struct mh_vec2 mh_median_of_triples(const struct mh_circle *circles, uint8_t count)
 {
     enum { MAX = MH_CIRCLES_MEDIAN_MAX };
-    struct mh_vec2 pairs[MAX * (MAX - 1) / 2][2]; /* that of circles i < j is number j (j - 1) / 2 + i */
+    struct chord chords[MAX * (MAX - 1) / 2]; /* that of circles i < j is number j (j - 1) / 2 + i */
     mh_real x[MAX * (MAX - 1) * (MAX - 2) / 6], y[MAX * (MAX - 1) * (MAX - 2) / 6];
     uint8_t triples = 0;
     for (uint8_t j = 1; j < count; j++) {
         for (uint8_t i = 0; i < j; i++) {
-            candidates(&circles[i], &circles[j], pairs[j * (j - 1) / 2 + i]);
+            chord_or_point(&circles[i], &circles[j], &chords[j * (j - 1) / 2 + i]);
         }
     }
     for (uint8_t k = 2; k < count; k++) {
@@ -327,15 +362,15 @@ struct mh_vec2 mh_median_of_triples(const struct mh_circle *circles, uint8_t cou
             for (uint8_t i = 0; i < j; i++) {
                 struct mh_vec2 p;
                 /* the pair of the third and the first goes the other way round */
-                incentre(nearer(pairs[j * (j - 1) / 2 + i], &circles[k], false),
-                         nearer(pairs[k * (k - 1) / 2 + j], &circles[i], false),
-                         nearer(pairs[k * (k - 1) / 2 + i], &circles[j], true), &p);
+                incentre(nearer(&chords[j * (j - 1) / 2 + i], &circles[k], false),
+                         nearer(&chords[k * (k - 1) / 2 + j], &circles[i], false),
+                         nearer(&chords[k * (k - 1) / 2 + i], &circles[j], true), &p);
                 x[triples] = p.x;
                 y[triples] = p.y;
                 triples++;
             }
         }
     }
-    const struct mh_vec2 point = {median(x, triples), median(y, triples)};
+    const struct mh_vec2 point = {median_of(x, triples), median_of(y, triples)};
     return point;
 }

@@ -17,11 +17,9 @@ static enum mh_status check(const struct mh_heard *heard, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const struct mh_vec2 at = heard[i].place;
-        if (!mh_finite(at.x) || !mh_finite(at.y) || !mh_finite(heard[i].energy)) {
-            return MH_ERR_NOT_FINITE;
-        }
-        if (mh_abs(at.x) > PLACE_MAX || mh_abs(at.y) > PLACE_MAX || mh_abs(heard[i].energy) > ENERGY_MAX) {
-            return MH_ERR_RANGE;
+        const mh_real energy = heard[i].energy;
+        if (!(mh_abs(at.x) <= PLACE_MAX && mh_abs(at.y) <= PLACE_MAX && mh_abs(energy) <= ENERGY_MAX)) {
+            return mh_finite(at.x) && mh_finite(at.y) && mh_finite(energy) ? MH_ERR_RANGE : MH_ERR_NOT_FINITE;
         }
     }
     return MH_OK;
