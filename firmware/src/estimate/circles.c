@@ -350,7 +350,7 @@ struct mh_vec2 mh_median_of_triples(const struct mh_circle *circles, uint8_t cou
 {
     enum { MAX = MH_CIRCLES_MEDIAN_MAX };
     struct chord chords[MAX * (MAX - 1) / 2]; /* that of circles i < j is number j (j - 1) / 2 + i */
-    mh_real x[MAX * (MAX - 1) * (MAX - 2) / 6], y[MAX * (MAX - 1) * (MAX - 2) / 6];
+    mh_real x[MAX * (MAX - 1) * (MAX - 2) / 6] = {0}, y[MAX * (MAX - 1) * (MAX - 2) / 6] = {0};
     uint8_t triples = 0;
     for (uint8_t j = 1; j < count; j++) {
         for (uint8_t i = 0; i < j; i++) {

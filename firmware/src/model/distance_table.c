@@ -19,11 +19,12 @@ static const mh_real levels[FINEST] PROGMEM = {
 
 static mh_real level(uint8_t intervals, uint16_t stride, uint16_t k)
 {
-    return stride > 0 ? pgm_read_float(&levels[k * stride - 1U]) : mh_squared((mh_real)intervals / (mh_real)k);
+    return stride > 0 ? pgm_read_float(&levels[(uint16_t)(k * stride - 1)])
+                      : mh_squared((mh_real)intervals / (mh_real)k);
 }
 
 /* From one n_k to the next in `levels`; 0 if they are not there. */
-static uint16_t stride_of(uint8_t intervals) { return FINEST % intervals == 0 ? (uint16_t)(FINEST / intervals) : 0; }
+static uint16_t stride_of(uint8_t intervals) { return (uint16_t)(FINEST % intervals == 0 ? FINEST / intervals : 0); }
 
 uint16_t mh_distance_interval(uint8_t intervals, mh_real energy)
 {
