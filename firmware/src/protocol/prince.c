@@ -229,6 +229,13 @@ static bool is_idle(const struct mh_prince *p)
     return idle;
 }
 
+/* Who does not watch looks for new targets at an instant of its own in each watch period -> the first of these after `time`. */
+static mh_tick own_instant(const struct mh_prince *p, mh_tick time)
+{
+    const mh_tick tick = p->config->tick, turns = p->config->watch_period / tick;
+    return mh_tick_aligned(mh_spread(p->node->id, 0, turns) * tick, turns * tick, time + 1);
+}
+
 /* When the next tick is for this node -> *next. Returns false if there is none. */
 static bool next_tick(const struct mh_prince *p, mh_tick *next)
 {
@@ -241,8 +248,7 @@ static bool next_tick(const struct mh_prince *p, mh_tick *next)
     }
     bool any = false;
     if (p->config->watch_period > 0) {
-        const mh_tick turns = p->config->watch_period / tick;
-        *next = mh_tick_aligned(mh_spread(p->node->id, 0, turns) * tick, turns * tick, p->time + 1);
+        *next = own_instant(p, p->time);
         any = true;
     }
     if (later && (!any || mh_tick_before(entry, *next))) {
@@ -264,9 +270,13 @@ static void arm(struct mh_prince *p)
             next = time;
         }
     }
+    const mh_tick started = p->began + MH_PRINCE_START;
+    const bool starts = p->time - p->began < MH_PRINCE_START;
+    if (starts && mh_tick_before(started, next)) {
+        next = started;
+    }
     bool later;
-    const bool needed = p->config->wake_period == 0 || p->time - p->began < MH_PRINCE_START || !is_idle(p) ||
-                        searches(p, &later, &time);
+    const bool needed = p->config->wake_period == 0 || starts || !is_idle(p) || searches(p, &later, &time);
     p->node->port->set_timer(p->node->context, p->node->port->own(p->node->context, next));
     p->node->port->listen(p->node->context, needed);
 }
@@ -501,12 +511,15 @@ static void timer(void *state, mh_tick now)
     arm(p);
 }
 
-/* Whoever looks for new targets, and hears one that no row explains. */
+/* Whoever looks for new targets now, and hears one that no row explains. */
 static void find(struct mh_prince *p)
 {
-    struct mh_prince_row *row = mh_prince_find(p, 0);
-    if (!row && mh_prince_is_new(p)) {
-        row = mh_prince_find_or_make(p, 0, true, p->time + NEW_TIME);
+    bool later;
+    mh_tick next;
+    const bool looks =
+        searches(p, &later, &next) || (p->config->watch_period > 0 && own_instant(p, p->sampled - 1) == p->sampled);
+    if (looks && mh_prince_is_new(p)) {
+        struct mh_prince_row *row = mh_prince_find_or_make(p, 0, true, p->time + NEW_TIME);
         if (row) {
             mh_prince_become_competitor(p, row, NEW_TIME);
         }

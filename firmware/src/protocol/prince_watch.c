@@ -14,6 +14,7 @@
 #define OTHERS_WAIT 200   /* ticks in which somebody else may ask first */
 #define QUERY_REST 200    /* ticks after the window of a query that was heard, until the next */
 #define SLACK_M 10.0f     /* that a target may be off where it is expected */
+#define UNKNOWN_MPS 20.0f /* that a target may go where nothing is known of it */
 #define EXPLAINED 1.5f    /* times the energy expected of the targets that are known, and what is heard is one more */
 
 mh_real mh_prince_speed(const struct mh_prince_row *row)
@@ -61,7 +62,7 @@ mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *
     return own * mh_q20_to_real(p->value);
 }
 
-/* What is expected of all targets but `own`, each `slack_m` nearer than expected, and more so the longer ago it was found. */
+/* What is expected of all targets but `own`, each `slack_m` nearer than expected, and more so the longer ago it was found: it may have turned. */
 static mh_real explained(const struct mh_prince *p, const struct mh_prince_row *own, mh_real slack_m)
 {
     mh_real sum = 0;
@@ -69,7 +70,7 @@ static mh_real explained(const struct mh_prince *p, const struct mh_prince_row *
         const struct mh_prince_row *row = &p->rows[i];
         if (row != own && row->state != MH_PRINCE_FREE && row->fixed) {
             const struct mh_vec2 at = expected(p, row);
-            const mh_real drift_mps = row->vx_cmps == 0 && row->vy_cmps == 0 ? 2 * SLACK_M : 2;
+            const mh_real speed_mps = mh_prince_speed(row), drift_mps = speed_mps > 0 ? speed_mps : UNKNOWN_MPS;
             const mh_real nearer_m = slack_m > 0 ? slack_m + drift_mps * mh_seconds_between(row->found, p->time) : 0;
             const mh_real distance_m = mh_sqrt(mh_squared(at.x) + mh_squared(at.y)) - nearer_m;
             sum += p->config->loudness_m2 * row->members / mh_squared(mh_max(distance_m, 1));
