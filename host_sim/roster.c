@@ -94,7 +94,9 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         tracker_tell_clusters(&kit->tracker, &kit->clusters);
         kit->head.lateness = kit->tracker.config.cv.lag;
     }
-    if (kit->protocol.in_turns) {
+    if (kit->protocol.protocol == &mh_protocol_prince) {
+        kit->sensor.interval = 1; /* it samples when it likes */
+    } else if (kit->protocol.in_turns) {
         const bool walks = kit->protocol.protocol == &mh_protocol_token;
         kit->head.window = walks ? kit->protocol.config.token.window : kit->protocol.config.cluster.window;
         kit->head.own_first = walks;
@@ -171,7 +173,7 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     if (roster->kit.protocol.protocol == &mh_protocol_token && tell_start(roster, scenario, error, error_size)) {
         return -1;
     }
-    return 0;
+    return protocol_tell_entries(&roster->kit.protocol, scenario, roster->seed, error, error_size);
 }
 
 int roster_make(struct roster *roster, const struct scenario *scenario, uint64_t seed, char *error, size_t error_size)

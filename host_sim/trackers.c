@@ -3,6 +3,7 @@
 #include "radio/radio.h"
 #include "roster.h"
 #include "world/mobility.h"
+#include "world/targets.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -126,6 +127,10 @@ static void set_up_centroid(struct tracker_choice *choice, const struct scenario
     (void)region;
     mh_centroid_config_default(&choice->config.centroid);
     choice->config.centroid.sensing_range_m = (mh_real)scenario->sensor.range_m;
+    if (scenario->sensor.quantity == QUANTITY_SOUND) {
+        choice->measures = QUANTITY_SOUND;
+        choice->config.centroid.strongest = 3; /* Han 2.1 */
+    }
 }
 
 /* As the target moves, and at its height: fixed clusters and their centre know all of that. */
@@ -217,6 +222,36 @@ static void set_up_gas(struct tracker_choice *choice, const struct scenario *sce
     }
 }
 
+/* C of source.loudness. */
+static mh_real loudness_of(const struct scenario *scenario)
+{
+    return (mh_real)(scenario->source.loudness * scenario->sensor.range_m * scenario->sensor.range_m);
+}
+
+static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
+                            const struct mh_region *region)
+{
+    const bool joint = choice->tracker == &mh_tracker_acoustic; /* the others cannot */
+    const double least = 1e-3;                                  /* of a sensor without noise */
+    struct mh_acoustic_config *config = &choice->config.acoustic;
+    mh_acoustic_config_default(config, (mh_real)scenario->sensor.range_m);
+    config->sound.loudness_m2 = loudness_of(scenario);
+    config->sound.source_sd = (mh_real)scenario->sensor.source_noise;
+    config->sound.background_sd = (mh_real)fmax(scenario->sensor.background_noise, least);
+    config->variant = scenario->tracker.variant;
+    config->intervals = (uint8_t)scenario->tracker.intervals;
+    config->strongest = (uint8_t)(scenario->tracker.strongest > 0 ? scenario->tracker.strongest : UINT8_MAX);
+    config->separation = scenario->tracker.separation == MH_SEPARATION_JOINT && !joint ? MH_SEPARATION_DECOMPOSITION
+                                                                                       : scenario->tracker.separation;
+    if (scenario->tracker.share_range_m > 0) {
+        config->share_range_m = (mh_real)scenario->tracker.share_range_m;
+    }
+    config->filtered = scenario->tracker.filtered;
+    config->mirror_check = scenario->protocol.guards > 0;
+    config->speed_mps = (mh_real)target_of(scenario, region).speed_mps;
+    mh_group_config_default(&config->group, scenario->tracker.groups);
+}
+
 static const struct {
     const struct mh_tracker *tracker;
     const char *meaning;
@@ -233,8 +268,9 @@ static const struct {
      set_up_pftl},
     {&mh_tracker_msl, "ranged target: particles that all who detect it can have (MSL, range-free)", QUANTITY_RANGE,
      set_up_msl},
-    {&mh_tracker_centroid, "ranged target: the middle of those who detect it (range-free)", QUANTITY_RANGE,
-     set_up_centroid},
+    {&mh_tracker_centroid,
+     "ranged target: the middle of those who detect it (range-free); of sound the three who hear it best",
+     QUANTITY_RANGE, set_up_centroid},
     {&mh_tracker_cv_ukf, "ranged target at nearly constant velocity: unscented Kalman filter, samples at any rate (Xu)",
      QUANTITY_RANGE, set_up_cv},
     {&mh_tracker_cv_ekf, "the same with an extended Kalman filter", QUANTITY_RANGE, set_up_cv},
@@ -245,6 +281,11 @@ static const struct {
      QUANTITY_GAS, set_up_gas},
     {&mh_tracker_gas_ekf, "gas leak in the wind: extended Kalman filter (Zhang et al.)", QUANTITY_GAS, set_up_gas},
     {&mh_tracker_gas_ukf, "gas leak in the wind: unscented Kalman filter (Zhang et al.)", QUANTITY_GAS, set_up_gas},
+    {&mh_tracker_acoustic, "targets that are heard: median of triples and Gauss-Newton, several together, groups",
+     QUANTITY_SOUND, set_up_acoustic},
+    {&mh_tracker_dm, "targets that are heard: distances from a table, three circles (Han)", QUANTITY_SOUND,
+     set_up_acoustic},
+    {&mh_tracker_ml, "targets that are heard: maximum likelihood on a grid (Han)", QUANTITY_SOUND, set_up_acoustic},
 };
 
 enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
@@ -271,7 +312,7 @@ int tracker_choose(const struct scenario *scenario, const struct mh_region *regi
     }
     snprintf(error, error_size,
              "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf, cv_ekf, gas, gas_small, "
-             "gas_ekf or gas_ukf",
+             "gas_ekf, gas_ukf, acoustic, dm or ml",
              scenario->tracker.name);
     return -1;
 }
@@ -460,6 +501,46 @@ static void set_up_token(struct protocol_choice *choice, const struct scenario *
     config->heads_max = (uint8_t)scenario->protocol.heads_max;
 }
 
+static void set_up_prince(struct protocol_choice *choice, const struct scenario *scenario)
+{
+    struct mh_prince_config *config = &choice->config.prince;
+    choice->protocol = &mh_protocol_prince;
+    choice->in_turns = true;
+    mh_prince_config_default(config, (enum mh_prince_election)(scenario->protocol.election - ELECTION_PRINCE),
+                             scenario->protocol.guards > 0, (mh_real)scenario->sensor.range_m,
+                             (mh_real)radio_nominal_range_m(scenario));
+    config->port = &mh_mote_prince;
+    config->replies = (uint8_t)scenario->protocol.replies;
+    config->farthest = scenario->protocol.farthest;
+    config->loudness_m2 = loudness_of(scenario);
+    config->step_m = (mh_real)scenario->protocol.lead_m;
+    config->tick = ticks(scenario->sensor.interval_s);
+    config->watch_period = ticks(scenario->protocol.watch_s);
+    config->wake_period = ticks(scenario->radio.wake_period_s);
+    config->wake_length = ticks(scenario->radio.wake_length_s);
+}
+
+int protocol_tell_entries(struct protocol_choice *choice, const struct scenario *scenario, uint64_t seed, char *error,
+                          size_t error_size)
+{
+    struct targets targets;
+    if (choice->protocol != &mh_protocol_prince || !scenario->protocol.entries) {
+        return 0;
+    }
+    if (targets_make(&targets, scenario, seed, error, error_size)) {
+        return -1;
+    }
+    for (size_t i = 0; i < targets.count; i++) {
+        const double start_s = targets.list[i].start_s;
+        const struct point at = targets_at(&targets, i, start_s).at;
+        choice->entries[i] = (struct mh_prince_entry){place_from_metres(at.x_m, at.y_m, 0), ticks(start_s)};
+    }
+    choice->config.prince.entries = choice->entries;
+    choice->config.prince.entry_count = (uint8_t)targets.count;
+    targets_free(&targets);
+    return 0;
+}
+
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
                     size_t error_size)
 {
@@ -480,6 +561,10 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         set_up_fixed(choice, scenario);
         return 0;
     }
+    if (strcmp(name, mh_protocol_prince.name) == 0) {
+        set_up_prince(choice, scenario);
+        return 0;
+    }
     if (strcmp(name, mh_protocol_token.name) == 0) {
         set_up_token(choice, scenario);
         return 0;
@@ -489,7 +574,7 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         choice->config.chatter.interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S);
         return 0;
     }
-    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct, cluster, fixed, token or chatter",
-             name);
+    snprintf(error, error_size,
+             "network.protocol: `%s`, expected collection, direct, cluster, prince, fixed, token or chatter", name);
     return -1;
 }

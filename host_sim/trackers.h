@@ -2,6 +2,7 @@
 #ifndef MOTEHOUND_SIM_TRACKERS_H
 #define MOTEHOUND_SIM_TRACKERS_H
 
+#include "motehound/acoustic.h"
 #include "motehound/centroid.h"
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
@@ -18,6 +19,7 @@
 #include "motehound/mote.h"
 #include "motehound/msl.h"
 #include "motehound/pftl.h"
+#include "motehound/prince.h"
 #include "motehound/range.h"
 #include "motehound/token.h"
 #include "scenario/recording.h"
@@ -39,6 +41,7 @@ struct tracker_choice {
         struct mh_gas_config gas;
         struct mh_cv_config cv;
         struct mh_gas_wind_config gas_wind;
+        struct mh_acoustic_config acoustic;
     } config;                                      /* the tracker's own */
     struct mh_cv_noise noise[CLUSTERED_NODES_MAX]; /* of fixed clusters' nodes */
 };
@@ -49,7 +52,7 @@ struct centre_choice {
     struct mh_fusion_centre_config config;
 };
 
-/* Points into itself where clusters are fixed: not to be copied or moved. */
+/* Points into itself where clusters are fixed or targets expected: not to be copied or moved. */
 struct protocol_choice {
     const struct mh_protocol *protocol;
     /* Each node with a sensor can be head, the sink is none, and sensors sample when they are asked; else the sink is the only head, and
@@ -66,10 +69,12 @@ struct protocol_choice {
         struct mh_cluster_config cluster; /* but for the sink, which the roster knows */
         struct mh_fixed_config fixed;     /* likewise */
         struct mh_token_config token;     /* likewise, and but for the node that begins */
+        struct mh_prince_config prince;   /* but for where targets are expected */
         struct chatter_config chatter;
     } config;
     struct mh_fixed_cluster clusters[SCENARIO_NUMBERS_MAX]; /* of `fixed` */
     struct mh_fixed_member members[CLUSTERED_NODES_MAX];
+    struct mh_prince_entry entries[TARGETS_MAX]; /* of `prince` */
 };
 
 /* The tracker that scenario->tracker names. `region` is where the source can be; NULL: unbounded. Returns 0, or -1 with one line in
@@ -104,7 +109,11 @@ bool tracker_describe(size_t i, const char **name, const char **meaning);
 /* Let the protocol `fixed` know its clusters; no other has any. */
 void protocol_tell_clusters(struct protocol_choice *choice, const struct clusters *clusters);
 
-/* The protocol called `name`; `fixed` is still to be told its clusters. Returns as tracker_choose. */
+/* Let the protocol `prince` know where and when targets begin in the run with `seed`, if scenario->protocol says so. Returns as tracker_choose. */
+int protocol_tell_entries(struct protocol_choice *choice, const struct scenario *scenario, uint64_t seed, char *error,
+                          size_t error_size);
+
+/* The protocol called `name`; `fixed` is still to be told its clusters, `prince` its entries. Returns as tracker_choose. */
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,
                     size_t error_size);
 

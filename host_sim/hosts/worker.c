@@ -65,7 +65,9 @@ static int make_motes(struct motes *motes, const motehound_worker_assign_t *mess
         return fail(error, error_size, "out of memory");
     }
     if (scenario_parse(scenario, strlen(scenario), "the run's scenario", &motes->scenario, error, error_size) != 0 ||
-        mote_kit_make(&motes->kit, &motes->scenario, error, error_size) != 0) {
+        mote_kit_make(&motes->kit, &motes->scenario, error, error_size) != 0 ||
+        protocol_tell_entries(&motes->kit.protocol, &motes->scenario, (uint64_t)message->seed, error, error_size) !=
+            0) {
         return -1;
     }
     tracker_seed(&motes->kit.tracker, (uint32_t)message->seed);
