@@ -287,13 +287,13 @@ static void refuses_what_it_cannot_run(void)
     struct scenario scenario = e1();
     scenario.tracker.name = unknown;
     assert_refused(&scenario, "tracker.name: `magic`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf, "
-                              "cv_ekf, gas, gas_small, gas_ekf or gas_ukf");
+                              "cv_ekf, gas, gas_small, gas_ekf, gas_ukf, acoustic, dm or ml");
     scenario.tracker.name = range;
     assert_refused(&scenario, "tracker.name: `range` works on ranges");
     scenario = e1();
     scenario.network.protocol = unknown;
     assert_refused(&scenario,
-                   "network.protocol: `magic`, expected collection, direct, cluster, fixed, token or chatter");
+                   "network.protocol: `magic`, expected collection, direct, cluster, prince, fixed, token or chatter");
     scenario = e1();
     scenario.tracker.diffusion_m2ps = -1;
     assert_refused(&scenario, "tracker.*");
