@@ -32,7 +32,7 @@ static void strips_lie_on_both_sides_of_the_path(void)
                  {50.1f, MH_NODE_OUTER, MH_NODE_OUTER},  {79.9f, MH_NODE_OUTER, MH_NODE_OUTER},
                  {80.1f, MH_NODE_NONE, MH_NODE_OUTER},   {90.1f, MH_NODE_NONE, MH_NODE_NONE}};
     const struct mh_strips single = strips(0.0f), group = strips(10.0f);
-    for (uint8_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         for (int16_t ahead = -20; ahead <= 120; ahead = (int16_t)(ahead + 70)) {
             const struct mh_vec2 left = along(COURSE.fix, ahead, CASES[i].off);
             const struct mh_vec2 right = along(COURSE.fix, ahead, -CASES[i].off);
