@@ -163,7 +163,6 @@ struct mh_prince_row {
     bool is_passive : 1;      /* somebody has taken over: only answers, until the next awake_t */
     bool fixed : 1;           /* there is a fix: what follows holds */
     bool was_head : 1;        /* of this generation, or had it in mind */
-    bool suppressed : 1;      /* timestamp: keeps silent */
     bool tried : 1;           /* locator: this is the second try */
     bool merging : 1;         /* head: has asked the head of `other` */
     mh_tick found;            /* the fix: when, ... */

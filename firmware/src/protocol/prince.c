@@ -38,10 +38,12 @@ void mh_prince_plan(struct mh_prince *p, struct mh_prince_row *row, enum mh_prin
 
 void mh_prince_calm(struct mh_prince_row *row)
 {
-    row->act = MH_PRINCE_ACT_NONE;
     row->wants = 0;
     row->tried = false;
-    mh_prince_clear(row, MH_PRINCE_ACT);
+    if (row->act != MH_PRINCE_ACT_RELEASE) { /* which is due whatever comes */
+        row->act = MH_PRINCE_ACT_NONE;
+        mh_prince_clear(row, MH_PRINCE_ACT);
+    }
     mh_prince_clear(row, MH_PRINCE_REPLY);
     mh_prince_clear(row, MH_PRINCE_CLOSE);
 }

@@ -1,9 +1,46 @@
 #include "prince_node.h"
 
 #define DECIDE_WAIT 150   /* ticks after the back-offs of all, ... */
-#define DECIDE_SPREAD 200 /* ... and up to so many more, until the strongest asks */
+#define DECIDE_SPREAD 200 /* ... and up to so many more, until the winner acts */
 #define HOLD 750          /* ticks for which who has lost does not compete, ... */
 #define HOLD_SPREAD 500   /* ... and up to so many more */
+
+void mh_prince_enter(struct mh_prince *p, struct mh_prince_row *row)
+{
+    row->contenders = 0;
+    row->best = p->node->id;
+    row->best_value = row->value;
+    row->best_time = p->time;
+    mh_prince_plan(p, row, MH_PRINCE_ACT_CONTEND, mh_prince_wait(p, p->config->contest));
+}
+
+void mh_prince_plan_decision(struct mh_prince *p, struct mh_prince_row *row, mh_tick began)
+{
+    const mh_tick decides = began + p->config->contest + DECIDE_WAIT + mh_prince_wait(p, DECIDE_SPREAD);
+    mh_prince_plan(p, row, MH_PRINCE_ACT_DECIDE, decides - p->time);
+}
+
+void mh_prince_hold_back(struct mh_prince *p, struct mh_prince_row *row)
+{
+    row->hold = p->time + HOLD + mh_prince_wait(p, HOLD_SPREAD);
+}
+
+struct mh_prince_row *mh_prince_contest(struct mh_prince *p, uint32_t target, uint16_t generation, mh_tick time)
+{
+    struct mh_prince_row *row = mh_prince_find(p, target);
+    if (!row || !mh_prince_is_fresh(p, time)) {
+        return NULL;
+    }
+    if (mh_prince_ahead(generation, row->generation) <= 0) {
+        mh_prince_remind(p, row);
+        return NULL;
+    }
+    if (row->act != MH_PRINCE_ACT_CONTEND && row->act != MH_PRINCE_ACT_DECIDE) {
+        return NULL;
+    }
+    row->contenders = (uint8_t)(row->contenders + (row->contenders < UINT8_MAX));
+    return row;
+}
 
 void mh_prince_contend(struct mh_prince *p, struct mh_prince_row *row)
 {
@@ -11,12 +48,8 @@ void mh_prince_contend(struct mh_prince *p, struct mh_prince_row *row)
         mh_prince_detect(p, row);
         return;
     }
-    row->contenders = 0;
     row->value = p->value;
-    row->best = p->node->id;
-    row->best_value = p->value;
-    row->best_time = p->time;
-    mh_prince_plan(p, row, MH_PRINCE_ACT_CONTEND, mh_prince_wait(p, p->config->contest));
+    mh_prince_enter(p, row);
 }
 
 void mh_prince_say_compete(struct mh_prince *p, struct mh_prince_row *row)
@@ -25,7 +58,6 @@ void mh_prince_say_compete(struct mh_prince *p, struct mh_prince_row *row)
         mh_prince_say_detection(p, row);
         return;
     }
-    const mh_tick decides = row->best_time + p->config->contest + DECIDE_WAIT + mh_prince_wait(p, DECIDE_SPREAD);
     if (row->contenders < MH_PRINCE_CONTENDERS) {
         const struct mh_message message = {.kind = MH_MESSAGE_COMPETE,
                                            .as.compete = {.sender = (int32_t)p->node->id,
@@ -37,7 +69,7 @@ void mh_prince_say_compete(struct mh_prince *p, struct mh_prince_row *row)
                                                           .value_q20 = row->value}};
         mh_prince_send(p, &message);
     }
-    mh_prince_plan(p, row, MH_PRINCE_ACT_DECIDE, decides - p->time);
+    mh_prince_plan_decision(p, row, row->best_time);
 }
 
 void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row)
@@ -47,26 +79,17 @@ void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row)
     } else if (row->best == p->node->id) {
         mh_prince_ask(p, row, MH_LOCATE_COMPETITION);
     } else {
-        row->hold = p->time + HOLD + mh_prince_wait(p, HOLD_SPREAD);
+        mh_prince_hold_back(p, row);
     }
 }
 
 void mh_prince_hear_compete(struct mh_prince *p, const mh_compete_t *compete)
 {
-    struct mh_prince_row *row = mh_prince_find(p, (uint32_t)compete->target);
-    if (!row || !mh_prince_is_fresh(p, (mh_tick)compete->time_ms)) {
-        return;
-    }
-    if (mh_prince_ahead((uint16_t)compete->generation, row->generation) <= 0) {
-        mh_prince_remind(p, row);
-        return;
-    }
-    if (row->act != MH_PRINCE_ACT_CONTEND && row->act != MH_PRINCE_ACT_DECIDE) {
-        return;
-    }
+    struct mh_prince_row *row =
+        mh_prince_contest(p, (uint32_t)compete->target, (uint16_t)compete->generation, (mh_tick)compete->time_ms);
     const mh_node_id sender = (mh_node_id)compete->sender;
-    row->contenders++;
-    if (compete->value_q20 > row->best_value || (compete->value_q20 == row->best_value && sender < row->best)) {
+    if (row &&
+        (compete->value_q20 > row->best_value || (compete->value_q20 == row->best_value && sender < row->best))) {
         row->best = sender;
         row->best_value = compete->value_q20;
     }

@@ -243,7 +243,7 @@ void mh_prince_lead(struct mh_prince *p, struct mh_prince_row *row, const struct
     drop_unfixed(p);
     row->generation++;
     row->state = MH_PRINCE_HEAD;
-    row->is_prince = row->is_passive = row->suppressed = false;
+    row->is_prince = row->is_passive = false;
     say_succeed(p, row);
     row->head = p->node->id;
     name_prince(p, row);
@@ -279,7 +279,7 @@ static void take_awake(struct mh_prince_row *row, const mh_awake_t *awake)
     row->head = (mh_node_id)awake->sender;
     row->prince = (mh_node_id)awake->prince;
     row->fixed = true;
-    row->is_passive = row->suppressed = row->merging = false;
+    row->is_passive = row->merging = false;
     row->found = (mh_tick)awake->time_ms;
     row->x_mm = awake->x_mm;
     row->y_mm = awake->y_mm;

@@ -6,6 +6,7 @@
 #include "motehound/prince.h"
 
 #define MH_PRINCE_SECOND 1000u
+#define MH_PRINCE_ANSWERS 2 /* that a fix takes at least, beside the locator's own energy */
 
 /* ---- prince.c ---- */
 
@@ -80,6 +81,9 @@ void mh_prince_quiet(struct mh_prince *p, struct mh_prince_row *row);
 /* Localise the target: sample, and if it is heard, ask (locate_t). */
 void mh_prince_ask(struct mh_prince *p, struct mh_prince_row *row, enum mh_locate kind);
 
+/* A target that has none yet gets its identifier. */
+void mh_prince_name(struct mh_prince *p, struct mh_prince_row *row);
+
 /* The samples that these wanted are there: p->value, of p->sampled. */
 void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row);
 void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row);
@@ -148,7 +152,19 @@ void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row);
 
 void mh_prince_hear_compete(struct mh_prince *p, const mh_compete_t *compete);
 
-/* ---- prince_stamp.c ---- */
+/* What elections have in common. A back-off, with row->value, before MH_PRINCE_ACT_CONTEND; */
+void mh_prince_enter(struct mh_prince *p, struct mh_prince_row *row);
+
+/* MH_PRINCE_ACT_DECIDE, when all have spoken who began about when this node `began`; */
+void mh_prince_plan_decision(struct mh_prince *p, struct mh_prince_row *row, mh_tick began);
+
+/* who has lost keeps silent for a while; */
+void mh_prince_hold_back(struct mh_prince *p, struct mh_prince_row *row);
+
+/* another contends to begin `generation`, since `time`: counted -> the row if this node contends for it too, else NULL. */
+struct mh_prince_row *mh_prince_contest(struct mh_prince *p, uint32_t target, uint16_t generation, mh_tick time);
+
+/* ---- prince_stamp.c: who detects the target first leads, and the fix is of what the others said of their detections ---- */
 
 void mh_prince_detect(struct mh_prince *p, struct mh_prince_row *row);
 void mh_prince_say_detection(struct mh_prince *p, struct mh_prince_row *row);

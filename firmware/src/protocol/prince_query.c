@@ -5,14 +5,11 @@
 #define RETRY_WAIT 500   /* ticks */
 #define RETRY_WATCH 2000 /* ticks for which who tries again stays at least */
 #define RELAY_PAUSE 3000 /* ticks between fail_t of who wins and gets no answers */
-#define HOLD 750         /* ticks for which such a one does not compete, ... */
-#define HOLD_SPREAD 500  /* ... and up to so many more */
 #define PASSING 2000     /* ticks for which a target that was only heard of is remembered */
 #define SLOT 25          /* ticks between answers of nodes whose distances from the target differ by ... */
 #define SLOT_M 5.0f      /* ... m */
 #define SLOT_SPREAD 15   /* ticks over which those of one slot spread */
 #define LEAST_SHARE 0.6f /* of a target in the energy of an answer: less tells nothing of it */
-#define ANSWERS 2        /* that a fix takes at least, beside the locator's own energy */
 
 /* ---- answers ---- */
 
@@ -125,11 +122,13 @@ static mh_tick window_of(const struct mh_prince *p, const struct mh_prince_row *
 }
 
 /* The founder's number and a count of 1 to 15: never 0. */
-static uint32_t new_target(struct mh_prince *p)
+void mh_prince_name(struct mh_prince *p, struct mh_prince_row *row)
 {
-    p->founded = (uint8_t)(p->founded % 15 + 1);
-    p->counters.founded++;
-    return p->node->id * 16 + p->founded;
+    if (row->target == 0) {
+        p->founded = (uint8_t)(p->founded % 15 + 1);
+        p->counters.founded++;
+        row->target = p->node->id * 16 + p->founded;
+    }
 }
 
 static void fail(struct mh_prince *p, struct mh_prince_row *row)
@@ -149,9 +148,7 @@ void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row)
         }
         return;
     }
-    if (row->target == 0) {
-        row->target = new_target(p);
-    }
+    mh_prince_name(p, row);
     row->state = MH_PRINCE_LOCATE;
     row->asker = p->node->id;
     row->asked = p->sampled;
@@ -182,7 +179,7 @@ static void count_kind(struct mh_prince *p, uint8_t kind)
 /* Who has won, but is not answered, is perhaps out of reach of the others: they are kept awake. */
 static void lose(struct mh_prince *p, struct mh_prince_row *row)
 {
-    row->hold = p->time + HOLD + mh_prince_wait(p, HOLD_SPREAD);
+    mh_prince_hold_back(p, row);
     if ((p->config->guards & MH_PRINCE_RELAY) && p->time - row->said >= RELAY_PAUSE) {
         row->said = p->time;
         p->counters.relays++;
@@ -199,7 +196,7 @@ void mh_prince_close(struct mh_prince *p, struct mh_prince_row *row)
     }
     const uint8_t kind = row->kind;
     row->state = MH_PRINCE_WATCH;
-    if (mh_prince_collected(p, row) >= ANSWERS && mh_prince_localise(p, row)) {
+    if (mh_prince_collected(p, row) >= MH_PRINCE_ANSWERS && mh_prince_localise(p, row)) {
         count_kind(p, kind);
         return;
     }
