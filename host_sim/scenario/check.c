@@ -277,6 +277,10 @@ static int check_targets(const struct scenario *scenario, const char *name, char
 {
     const enum path_kind path = scenario->source.path;
     const bool sound = scenario->sensor.quantity == QUANTITY_SOUND;
+    if (path != PATH_SCRIPTED && scenario->targets_count > 0) {
+        return fail(error, error_size, "%s: targets: expected none unless source.path is scripted, found %u", name,
+                    scenario->targets_count);
+    }
     if (!targets_are_several(path)) {
         return scenario->target.count > 1 ? fail(error, error_size,
                                                  "%s: target.count: expected 1 where source.path has one source alone, "

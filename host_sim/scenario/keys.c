@@ -363,6 +363,17 @@ static int split(const char *text, char separator, char ***pieces)
     return (int)count;
 }
 
+const struct member_range point_members[POINT_MEMBERS] = {
+    {"x_m", -1e6, 1e6}, {"y_m", -1e6, 1e6}, {"speed_factor", 1e-3, 1e3}};
+const struct member_range target_members[TARGET_MEMBERS] = {
+    {"start_s", 0, 1e6}, {"speed_mps", 0.01, 100}, {"loudness", 1e-3, 1e3}};
+
+/* The number of a member of a list. */
+static bool read_member(const char *text, const struct member_range *range, double *number)
+{
+    return text_number(text, strlen(text), number) && *number >= range->minimum && *number <= range->maximum;
+}
+
 /* "x,y[,factor]; ..." -> points, which the caller frees. Returns how many; -1 on anything else. */
 static int read_points(const char *text, double most, struct waypoint **points)
 {
@@ -376,12 +387,11 @@ static int read_points(const char *text, double most, struct waypoint **points)
     for (int i = 0; i < count && sound; i++) {
         char **numbers;
         const int numbers_count = split(pieces[i], ',', &numbers);
-        double number[3] = {0, 0, 1};
-        sound = numbers_count == 2 || numbers_count == 3;
+        double number[POINT_MEMBERS] = {0, 0, 1};
+        sound = numbers_count == 2 || numbers_count == POINT_MEMBERS;
         for (int j = 0; j < numbers_count && sound; j++) {
-            sound = text_number(numbers[j], strlen(numbers[j]), &number[j]) && fabs(number[j]) <= 1e6;
+            sound = read_member(numbers[j], &point_members[j], &number[j]);
         }
-        sound = sound && number[2] >= 1e-3 && number[2] <= 1e3;
         (*points)[i] = (struct waypoint){number[0], number[1], number[2]};
         if (numbers_count > 0) {
             free_list(numbers, (unsigned)numbers_count);
@@ -423,17 +433,15 @@ static bool read_target(const char *text, struct scripted_target *target)
     char *head = colon != NULL ? strndup(text, (size_t)(colon - text)) : NULL;
     char **numbers;
     const int numbers_count = head != NULL ? split(head, ',', &numbers) : -1;
-    double number[3] = {0};
-    bool sound = numbers_count == 3;
+    double number[TARGET_MEMBERS] = {0};
+    bool sound = numbers_count == TARGET_MEMBERS;
     for (int i = 0; i < numbers_count && sound; i++) {
-        sound = text_number(numbers[i], strlen(numbers[i]), &number[i]);
+        sound = read_member(numbers[i], &target_members[i], &number[i]);
     }
     if (numbers_count > 0) {
         free_list(numbers, (unsigned)numbers_count);
     }
     free(head);
-    sound = sound && number[0] >= 0 && number[0] <= 1e6 && number[1] >= 0.01 && number[1] <= 100 && number[2] >= 1e-3 &&
-            number[2] <= 1e3;
     *target = (struct scripted_target){.start_s = number[0], .speed_mps = number[1], .loudness = number[2]};
     const int count = sound ? read_points(colon + 1, POINTS_MAX, &target->points) : -1;
     target->points_count = count < 0 ? 0 : (unsigned)count;

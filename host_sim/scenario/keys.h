@@ -31,6 +31,14 @@ struct scenario_key {
 extern const struct scenario_key scenario_keys[];
 extern const size_t scenario_key_count;
 
+/* What the numbers of a point in a list of points, and of a target in a list of targets, must be; in the order of --set. */
+struct member_range {
+    const char *name;
+    double minimum, maximum; /* both included */
+};
+enum { POINT_MEMBERS = 3, TARGET_MEMBERS = 3 };
+extern const struct member_range point_members[POINT_MEMBERS], target_members[TARGET_MEMBERS];
+
 /* The key of that path, or NULL. */
 const struct scenario_key *scenario_key_find(const char *path);
 

@@ -270,18 +270,21 @@ struct document {
 
 enum { NUMBER_MAX = 60, POINT_MAX = 3 * NUMBER_MAX + 4 };
 
-/* `value`, or what stands for it where there is none; NULL, with one line, where it is no number. */
-static const char *number_text(const struct document *document, const char *path, const char *value,
-                               const char *standard)
+/* `value`, or what stands for it where there is none, of a member of the list's entry at `entry`; NULL, with one line, where it is no number of its range. */
+static const char *number_text(const struct document *document, const char *entry, const struct member_range *range,
+                               const char *value, const char *standard)
 {
     const char *text = value != NULL ? value : standard;
     double number;
-    if (strlen(text) <= NUMBER_MAX && text_number(text, strlen(text), &number)) {
+    if (strlen(text) <= NUMBER_MAX && text_number(text, strlen(text), &number) && number >= range->minimum &&
+        number <= range->maximum) {
         return text;
     }
-    char problem[8];
-    fail(document->error, document->error_size, "%s:%zu: %s: expected a number, found '%.60s'", document->name,
-         line_of(document->yaml, document->length, path, problem, sizeof problem), path, text);
+    char path[120], problem[8];
+    snprintf(path, sizeof path, "%s.%s", entry, range->name);
+    fail(document->error, document->error_size, "%s:%zu: %s: expected a number %g to %g, found '%.60s'", document->name,
+         line_of(document->yaml, document->length, path, problem, sizeof problem), path, range->minimum, range->maximum,
+         text);
     return NULL;
 }
 
@@ -290,12 +293,11 @@ static bool write_points(const struct document *document, const char *path, cons
                          unsigned count, char *text)
 {
     for (unsigned i = 0; i < count; i++) {
-        const char *members[] = {"x_m", "y_m", "speed_factor"};
-        const char *values[] = {points[i].x, points[i].y, points[i].speed_factor};
-        for (size_t j = 0; j < 3; j++) {
-            char member[120];
-            snprintf(member, sizeof member, "%s[%u].%s", path, i, members[j]);
-            const char *number = number_text(document, member, values[j], "1");
+        const char *values[POINT_MEMBERS] = {points[i].x, points[i].y, points[i].speed_factor};
+        char point[100];
+        snprintf(point, sizeof point, "%s[%u]", path, i);
+        for (size_t j = 0; j < POINT_MEMBERS; j++) {
+            const char *number = number_text(document, point, &point_members[j], values[j], "1");
             if (number == NULL) {
                 return false;
             }
@@ -330,22 +332,21 @@ static char *points_text(const struct document *document, const struct raw *raw)
 static bool write_target(const struct document *document, unsigned index, const struct raw_target *target,
                          const struct scenario *scenario, char *text)
 {
-    char path[3][40], standard[2][NUMBER_MAX];
-    static const char *const members[] = {"start_s", "speed_mps", "loudness"};
-    for (int j = 0; j < 3; j++) {
-        snprintf(path[j], sizeof path[j], "targets[%u].%s", index, members[j]);
+    char entry[40], points[60], standard[TARGET_MEMBERS][NUMBER_MAX] = {"0"};
+    snprintf(entry, sizeof entry, "targets[%u]", index);
+    snprintf(points, sizeof points, "%s.points", entry);
+    snprintf(standard[1], sizeof standard[1], "%.17g", scenario->source.speed_mps);
+    snprintf(standard[2], sizeof standard[2], "%.17g", scenario->source.loudness);
+    const char *values[TARGET_MEMBERS] = {target->start_s, target->speed_mps, target->loudness};
+    text += sprintf(text, "%s", index > 0 ? "|" : "");
+    for (size_t j = 0; j < TARGET_MEMBERS; j++) {
+        const char *number = number_text(document, entry, &target_members[j], values[j], standard[j]);
+        if (number == NULL) {
+            return false;
+        }
+        text += sprintf(text, "%s%c", number, j + 1 < TARGET_MEMBERS ? ',' : ':');
     }
-    snprintf(standard[0], sizeof standard[0], "%.17g", scenario->source.speed_mps);
-    snprintf(standard[1], sizeof standard[1], "%.17g", scenario->source.loudness);
-    const char *start = number_text(document, path[0], target->start_s, "0");
-    const char *speed = start != NULL ? number_text(document, path[1], target->speed_mps, standard[0]) : NULL;
-    const char *loudness = speed != NULL ? number_text(document, path[2], target->loudness, standard[1]) : NULL;
-    if (loudness == NULL) {
-        return false;
-    }
-    snprintf(path[0], sizeof path[0], "targets[%u].points", index);
-    text += sprintf(text, "%s%s,%s,%s:", index > 0 ? "|" : "", start, speed, loudness);
-    return write_points(document, path[0], target->points, target->points_count, text);
+    return write_points(document, points, target->points, target->points_count, text);
 }
 
 /* The targets as --set writes them. Returns NULL with one line. */
