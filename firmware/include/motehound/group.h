@@ -122,11 +122,11 @@ enum mh_status mh_group_join(struct mh_group *group, struct mh_vec2 *centroid, s
                              const struct mh_group *other, struct mh_vec2 other_centroid,
                              struct mh_vec2 other_velocity);
 
-/* Part `part`, from 0, of a group that is to be split, whose centroid and velocity are given -> it, its centroid and its velocity. All permutations of up to
+/* Part `part`, from 0, of a group that is to be split, whose centroid and velocity are given -> it, its centroid, its velocity and the standard deviation of that in each axis. All permutations of up to
  * MH_GROUP_MAX targets are compared, each a few multiplications a target. Errors: MH_NONE (it has no such part). */
 enum mh_status mh_group_part(const struct mh_group *group, const struct mh_group_config *config,
                              struct mh_vec2 centroid, struct mh_vec2 velocity, uint8_t part, struct mh_group *to,
-                             struct mh_vec2 *to_centroid, struct mh_vec2 *to_velocity);
+                             struct mh_vec2 *to_centroid, struct mh_vec2 *to_velocity, mh_real *velocity_sd);
 
 /* The group of `target`, its lowest identifier, which is not written -> bytes. Returns how many, at most MH_GROUP_BYTES(count):
  * count and `unresolved` (bit 7) (1); splits (high) and merges (low 4 bits) (1); with merges `near` (4); for groups of two and more extent (2); for each target vx, vy (1 + 1),

@@ -19,6 +19,7 @@
 struct mh_source {
     struct mh_vec2 position;
     struct mh_sym2 covariance;
+    uint8_t besides; /* further targets at the same place: it is so many times louder than one */
 };
 
 /* What has been found of one source. */

@@ -40,8 +40,8 @@ static struct mh_vec2 times(const struct mh_sym2 *a, struct mh_vec2 v)
 }
 
 /* One node's equation: r = sum of gradient . step */
-static void add(const struct mh_sound *sound, const struct mh_heard *heard, const struct mh_source_fix *at,
-                size_t count, struct normal *normal)
+static void add(const struct mh_sound *sound, const struct mh_heard *heard, const struct mh_source *sources,
+                const struct mh_source_fix *at, size_t count, struct normal *normal)
 {
     mh_real gradient[UNKNOWNS_MAX];
     mh_real e = 0;
@@ -49,7 +49,7 @@ static void add(const struct mh_sound *sound, const struct mh_heard *heard, cons
         const struct mh_vec2 away = {at[k].position.x - heard->place.x, at[k].position.y - heard->place.y};
         const mh_real square = mh_max(mh_squared(away.x) + mh_squared(away.y), MH_SOUND_NEAR_M * MH_SOUND_NEAR_M);
         const mh_real inverse = 1.0f / square;
-        const mh_real part = sound->loudness_m2 * inverse;
+        const mh_real part = (mh_real)(1 + sources[k].besides) * sound->loudness_m2 * inverse;
         gradient[2 * k] = part * inverse * away.x;
         gradient[2 * k + 1] = part * inverse * away.y;
         e += part;
@@ -95,7 +95,7 @@ static enum mh_status iterate(const struct mh_sound *sound, const struct mh_hear
         normal->right[i] = 0;
     }
     for (size_t i = 0; i < heard_count; i++) {
-        add(sound, &heard[i], fixes, count, normal);
+        add(sound, &heard[i], sources, fixes, count, normal);
     }
     for (size_t k = 0; k < count; k++) {
         add_prior(&sources[k], &fixes[k], k, normal);

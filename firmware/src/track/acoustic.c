@@ -232,6 +232,18 @@ static enum mh_status follow(const struct mh_acoustic *acoustic, mh_tick time, c
     return take_fix(&acoustic->config, scene, mh_acoustic_position(last), seconds, fix, &scene->own);
 }
 
+/* The one of the others, as a bit, with which it is about to become a group, where velocities before and after tell them apart. */
+static unsigned merging(const struct mh_acoustic_scene *scene)
+{
+    const struct mh_group *group = &scene->own.group;
+    for (uint8_t i = 0; i < scene->others_count && group->merges > 0; i++) {
+        if (scene->others[i].target == group->near) {
+            return 1u << i;
+        }
+    }
+    return 0;
+}
+
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
                            struct mh_estimate *estimate)
 {
@@ -253,12 +265,13 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     if (!tracking && count > 0) {
         scene.own.origin = measurements[0].place;
         scene.own.filter.x[0] = scene.own.filter.x[1] = 0;
+        mh_group_single(&scene.own.group, track->group.targets[0].target);
     }
     mh_acoustic_look_around(acoustic, time, &scene);
     const bool jointly =
         tracking && (scene.own.group.count > 1 || (!scene.alone && acoustic->config.separation == MH_SEPARATION_JOINT));
     const mh_real seconds = tracking ? mh_seconds_between(track->updated, time) : 0;
-    const bool expected = tracking && mh_acoustic_exchanged(&scene, seconds);
+    const unsigned expected = tracking ? mh_acoustic_exchanged(&scene, seconds) : 0u;
     mh_acoustic_listen(acoustic, jointly, measurements, count, &scene);
     acoustic->others_count = 0;
 
@@ -285,7 +298,8 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     }
     const bool merge = acoustic->kind->approach && acoustic->config.group.mode != MH_GROUP_NONE &&
                        acoustic->kind->approach(&acoustic->config, &scene);
-    scene.own.group.unresolved = scene.own.group.unresolved || expected || mh_acoustic_exchanged(&scene, seconds);
+    const unsigned exchanged = (expected | mh_acoustic_exchanged(&scene, seconds)) & ~merging(&scene);
+    scene.own.group.unresolved = scene.own.group.unresolved || exchanged != 0;
     *track = scene.own;
     acoustic->tracking = true;
     answer(track, time, estimate);
@@ -479,16 +493,15 @@ static enum mh_status part(const void *state, uint8_t number, uint32_t *target, 
     const struct mh_vec2 velocity = {acoustic->track.filter.x[2], acoustic->track.filter.x[3]};
     struct mh_acoustic_track own = acoustic->track;
     struct mh_vec2 position, moving;
+    mh_real moving_sd;
     const enum mh_status status =
         mh_group_part(&acoustic->track.group, &acoustic->config.group, mh_acoustic_position(&acoustic->track), velocity,
-                      number, &own.group, &position, &moving);
-    if (status != MH_OK) {
+                      number, &own.group, &position, &moving, &moving_sd);
+    const mh_real position_variance = mh_squared(acoustic->config.group.fix_sd_m), variance = mh_squared(moving_sd);
+    const struct mh_sym2 positions = {position_variance, 0, position_variance}, velocities = {variance, 0, variance};
+    if (status != MH_OK || set(&own, position, &positions, moving, &velocities, 0) != MH_OK) {
         return MH_NONE;
     }
-    own.filter.x[0] = position.x;
-    own.filter.x[1] = position.y;
-    own.filter.x[2] = moving.x;
-    own.filter.x[3] = moving.y;
     own.mode = own.group.count > 1 ? MH_TARGET_GROUP : MH_TARGET_SPARSE;
     *target = own.group.targets[0].target;
     *length = mh_acoustic_write(&own, bytes);

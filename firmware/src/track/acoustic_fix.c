@@ -170,6 +170,7 @@ static size_t sources_of(const struct mh_acoustic_config *config, const struct m
         sources[0].covariance = *covariance;
         sources[0].covariance.xx = mh_max(covariance->xx, PRIOR_VARIANCE);
         sources[0].covariance.yy = mh_max(covariance->yy, PRIOR_VARIANCE);
+        sources[0].besides = 0;
         return 1;
     }
     const mh_real variance = mh_squared(config->group.member_sd_m);
@@ -177,6 +178,7 @@ static size_t sources_of(const struct mh_acoustic_config *config, const struct m
         sources[i].position = mh_group_place(group, centroid, i);
         sources[i].covariance.xx = sources[i].covariance.yy = variance;
         sources[i].covariance.xy = 0;
+        sources[i].besides = 0;
     }
     return group->count;
 }
@@ -220,6 +222,9 @@ static enum mh_status locate_jointly(const struct mh_acoustic_config *config, st
     struct mh_source_fix fixes[MH_SOURCES_MAX];
     uint8_t first[MH_TARGETS_MAX] = {0}; /* source of each; 0, an own one: it is not in the fit */
     struct mh_group *group = &scene->own.group;
+    if (group->count > 1 && config->group.mode == MH_GROUP_WEIGHTS) {
+        return mh_acoustic_weigh(config, scene, seconds, fix);
+    }
     const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     size_t count = sources_of(config, group, mh_acoustic_position(&scene->own), &covariance, sources);
     for (uint8_t i = nearest(scene, first); i < scene->others_count; i = nearest(scene, first)) {
@@ -276,6 +281,6 @@ static bool approach(const struct mh_acoustic_config *config, struct mh_acoustic
     return mh_group_approach(&scene->own.group, &config->group, neighbours, scene->others_count);
 }
 
-const struct mh_acoustic_kind mh_acoustic_kind_gn = {locate_gn, reconsider_gn, locate_jointly, approach};
-const struct mh_acoustic_kind mh_acoustic_kind_dm = {locate_dm, NULL, NULL, NULL};
-const struct mh_acoustic_kind mh_acoustic_kind_ml = {locate_ml, NULL, NULL, NULL};
+const struct mh_acoustic_kind mh_acoustic_kind_gn = {locate_gn, reconsider_gn, locate_jointly, mh_acoustic_find_group, approach};
+const struct mh_acoustic_kind mh_acoustic_kind_dm = {locate_dm, NULL, NULL, NULL, NULL};
+const struct mh_acoustic_kind mh_acoustic_kind_ml = {locate_ml, NULL, NULL, NULL, NULL};

@@ -56,8 +56,8 @@ void mh_acoustic_look_around(const struct mh_acoustic *acoustic, mh_tick time, s
 void mh_acoustic_listen(const struct mh_acoustic *acoustic, bool jointly, const struct mh_measurement *measurements,
                         size_t count, struct mh_acoustic_scene *scene);
 
-/* True if the own track, after the fix of an instant `seconds` after the last, may have exchanged its identity with one of the others. */
-bool mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds);
+/* With which of the others the own track, at an instant `seconds` after the last fix, may have exchanged its identity: bit i for others[i]. */
+uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds);
 
 /* ---- acoustic_fix.c: where it is at one instant ---- */
 
@@ -77,6 +77,9 @@ struct mh_acoustic_kind {
     /* Together with all that are near, `seconds` after the last fix; a group's members. NULL: it cannot. */
     enum mh_status (*locate_jointly)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                                      mh_real seconds, struct mh_acoustic_fix *fix);
+    /* mh_acoustic_find_group. With approach. */
+    void (*find_group)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
+                       struct mh_acoustic_fix *fix);
     /* Whether it is to take in the neighbour own.group.near. NULL: it follows no groups. */
     bool (*approach)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene);
 };
@@ -84,6 +87,16 @@ struct mh_acoustic_kind {
 /* The fix's distance from where the own track is expected, chi-square. */
 mh_real mh_acoustic_surprise(const struct mh_acoustic_track *track, const struct mh_acoustic_fix *fix);
 #define MH_ACOUSTIC_GATE 25.0f
+
+/* ---- acoustic_group.c: groups ---- */
+
+/* What has been heard of a track that begins with `fix` may be several targets: then own.group, and the fix of its centroid. */
+void mh_acoustic_find_group(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
+                            struct mh_acoustic_fix *fix);
+
+/* The centroid of a group by the weights of the nodes, and its members as two sources of all its targets. As locate_jointly. */
+enum mh_status mh_acoustic_weigh(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
+                                 mh_real seconds, struct mh_acoustic_fix *fix);
 
 extern const struct mh_acoustic_kind mh_acoustic_kind_gn, mh_acoustic_kind_dm, mh_acoustic_kind_ml;
 

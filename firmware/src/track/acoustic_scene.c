@@ -226,8 +226,9 @@ void mh_acoustic_listen(const struct mh_acoustic *acoustic, bool jointly, const 
     }
 }
 
-bool mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds)
+uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds)
 {
+    uint16_t exchanged = 0;
     const struct mh_vec2 position = mh_acoustic_position(&scene->own), velocity = mh_acoustic_velocity(&scene->own);
     const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     for (uint8_t i = 0; i < scene->others_count; i++) {
@@ -242,8 +243,8 @@ bool mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real second
             mh_sqrt(x * x + y * y) - mh_group_extent(&scene->own.group) - mh_group_extent(&other->group);
         const mh_real variance = 0.5f * (covariance.xx + covariance.yy + other->covariance.xx + other->covariance.yy);
         if (apart < mh_max(DISTINCT_M, DISTINCT_SDS * mh_sqrt(variance))) {
-            return true;
+            exchanged = (uint16_t)(exchanged | 1u << i);
         }
     }
-    return false;
+    return exchanged;
 }

@@ -339,7 +339,7 @@ static void first_allotment(const uint8_t *sizes, uint8_t parts, uint8_t *allotm
 
 enum mh_status mh_group_part(const struct mh_group *group, const struct mh_group_config *config,
                              struct mh_vec2 centroid, struct mh_vec2 velocity, uint8_t part, struct mh_group *to,
-                             struct mh_vec2 *to_centroid, struct mh_vec2 *to_velocity)
+                             struct mh_vec2 *to_centroid, struct mh_vec2 *to_velocity, mh_real *velocity_sd)
 {
     const uint8_t n = group->count;
     uint8_t part_of[MH_GROUP_MAX], sizes[MH_GROUP_MAX];
@@ -349,8 +349,7 @@ enum mh_status mh_group_part(const struct mh_group *group, const struct mh_group
     }
 
     /* The velocities of the parts, relative to the centroid over the instants counted. */
-    const mh_real seconds = (mh_real)group->split_time * TIME;
-    const mh_real per_second = seconds > 0 ? 1.0f / seconds : 0.0f;
+    const mh_real per_second = 1.0f / mh_max((mh_real)group->split_time * TIME, 1.0f);
     struct parting parting = {.group = group,
                               .variance = 2.0f * mh_squared(config->fix_sd_m * per_second) + mh_squared(VELOCITY),
                               .turn = mh_squared(config->turn_sd_mps)};
@@ -407,6 +406,7 @@ enum mh_status mh_group_part(const struct mh_group *group, const struct mh_group
         found.unresolved = unresolved;
     }
     *to_velocity = parting.velocities[part];
+    *velocity_sd = mh_sqrt(parting.variance);
     *to = found;
     return MH_OK;
 }

@@ -8,6 +8,7 @@ void setUp(void) {}
 void tearDown(void) {}
 
 static struct mh_group_config config;
+static mh_real velocity_sd;
 
 static struct mh_vec2 at(mh_real x, mh_real y)
 {
@@ -171,7 +172,8 @@ static void part_two(mh_real seconds, struct mh_vec2 left, struct mh_vec2 right,
     }
     TEST_ASSERT_TRUE(split);
     for (uint8_t k = 0; k < 2; k++) {
-        TEST_ASSERT_EQUAL(MH_OK, mh_group_part(&group, &config, at(50, 60), at(0, 10), k, &part, &centroid, &velocity));
+        TEST_ASSERT_EQUAL(
+            MH_OK, mh_group_part(&group, &config, at(50, 60), at(0, 10), k, &part, &centroid, &velocity, &velocity_sd));
         TEST_ASSERT_EQUAL(1, part.count);
         TEST_ASSERT_FLOAT_WITHIN(1e-4f, centroid.x < 50 ? -4 : 4, velocity.x);
         TEST_ASSERT_FLOAT_WITHIN(1e-4f, 10, velocity.y);
@@ -181,7 +183,8 @@ static void part_two(mh_real seconds, struct mh_vec2 left, struct mh_vec2 right,
             *unresolved = part.unresolved;
         }
     }
-    TEST_ASSERT_EQUAL(MH_NONE, mh_group_part(&group, &config, at(0, 0), at(0, 0), 2, &part, &centroid, &velocity));
+    TEST_ASSERT_EQUAL(MH_NONE,
+                      mh_group_part(&group, &config, at(0, 0), at(0, 0), 2, &part, &centroid, &velocity, &velocity_sd));
 }
 
 static void velocities_tell_who_is_who(void)
@@ -219,13 +222,15 @@ static void one_of_three_leaves(void)
     }
     TEST_ASSERT_TRUE(split);
     velocity = at(10, -4);
-    TEST_ASSERT_EQUAL(MH_OK, mh_group_part(&group, &config, centroid, velocity, 0, &part, &centroid, &velocity));
+    TEST_ASSERT_EQUAL(MH_OK,
+                      mh_group_part(&group, &config, centroid, velocity, 0, &part, &centroid, &velocity, &velocity_sd));
     TEST_ASSERT_EQUAL(2, part.count);
     TEST_ASSERT_EQUAL(3, part.targets[0].target);
     TEST_ASSERT_EQUAL(5, part.targets[1].target);
     TEST_ASSERT_FLOAT_WITHIN(0.01f, 8, mh_group_extent(&part));
     TEST_ASSERT_FALSE(part.unresolved);
-    TEST_ASSERT_EQUAL(MH_OK, mh_group_part(&group, &config, centroid, at(10, -4), 1, &part, &centroid, &velocity));
+    TEST_ASSERT_EQUAL(
+        MH_OK, mh_group_part(&group, &config, centroid, at(10, -4), 1, &part, &centroid, &velocity, &velocity_sd));
     TEST_ASSERT_EQUAL(1, part.count);
     TEST_ASSERT_EQUAL(4, part.targets[0].target);
     TEST_ASSERT_FALSE(part.unresolved);
@@ -261,8 +266,8 @@ static void four_part_as_the_nearest_velocities_say(void)
         }
         TEST_ASSERT_TRUE(split);
         for (uint8_t k = 0; k < 4; k++) {
-            TEST_ASSERT_EQUAL(MH_OK,
-                              mh_group_part(&group, &config, at(0, 0), at(0, 0), k, &part, &centroid, &velocity));
+            TEST_ASSERT_EQUAL(MH_OK, mh_group_part(&group, &config, at(0, 0), at(0, 0), k, &part, &centroid, &velocity,
+                                                   &velocity_sd));
             const uint8_t *went = order[o];
             const uint8_t i = (uint8_t)(part.targets[0].target - 10u);
             TEST_ASSERT_FLOAT_WITHIN(1e-4f, 5 * way[went[i]][0], velocity.x);

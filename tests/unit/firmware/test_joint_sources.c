@@ -28,9 +28,23 @@ static void hear(const struct mh_vec2 *sources, size_t count)
 static void two_sources_half_a_range_apart(void)
 {
     const struct mh_vec2 truth[2] = {{40, 50}, {60, 52}};
-    const struct mh_source expected[2] = {{{36, 53}, {400, 0, 400}}, {{65, 49}, {400, 0, 400}}};
+    const struct mh_source expected[2] = {{{36, 53}, {400, 0, 400}, 0}, {{65, 49}, {400, 0, 400}, 0}};
     struct mh_source_fix fixes[2];
     hear(truth, 2);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_joint_sources(&sound, heard, NODES, expected, NULL, 2, fixes));
+    for (int k = 0; k < 2; k++) {
+        TEST_ASSERT_FLOAT_WITHIN(0.3f, truth[k].x, fixes[k].position.x);
+        TEST_ASSERT_FLOAT_WITHIN(0.3f, truth[k].y, fixes[k].position.y);
+    }
+}
+
+/* Three targets at two places. */
+static void two_at_one_place(void)
+{
+    const struct mh_vec2 truth[3] = {{30, 50}, {70, 52}, {70, 52}};
+    const struct mh_source expected[2] = {{{33, 48}, {400, 0, 400}, 0}, {{66, 54}, {400, 0, 400}, 1}};
+    struct mh_source_fix fixes[2];
+    hear(truth, 3);
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_joint_sources(&sound, heard, NODES, expected, NULL, 2, fixes));
     for (int k = 0; k < 2; k++) {
         TEST_ASSERT_FLOAT_WITHIN(0.3f, truth[k].x, fixes[k].position.x);
@@ -47,7 +61,7 @@ static void as_many_as_there_is_room_for(void)
     for (int k = 0; k < MH_SOURCES_MAX; k++) {
         const struct mh_vec2 u = mh_direction(2.0f * MH_PI * (mh_real)k / MH_SOURCES_MAX - MH_PI);
         const struct mh_vec2 place = {45 + 35 * u.x, 47 + 35 * u.y}, guess = {46 + 35 * u.x, 45 + 35 * u.y};
-        const struct mh_source source = {guess, {100, 0, 100}};
+        const struct mh_source source = {guess, {100, 0, 100}, 0};
         truth[k] = place;
         expected[k] = source;
     }
@@ -63,7 +77,7 @@ static void as_many_as_there_is_room_for(void)
 static void information_of_one_source(void)
 {
     const struct mh_vec2 truth = {50, 40};
-    const struct mh_source expected = {truth, {9, 2, 4}};
+    const struct mh_source expected = {truth, {9, 2, 4}, 0};
     struct mh_source_fix fix;
     struct mh_sym2 fisher = {0, 0, 0};
     hear(&truth, 1);
@@ -91,7 +105,7 @@ static void information_of_one_source(void)
 static void a_source_that_nobody_hears(void)
 {
     const struct mh_vec2 truth = {50, 40};
-    const struct mh_source expected[2] = {{{52, 41}, {25, 0, 25}}, {{5000, 40}, {25, 3, 36}}};
+    const struct mh_source expected[2] = {{{52, 41}, {25, 0, 25}, 0}, {{5000, 40}, {25, 3, 36}, 0}};
     struct mh_source_fix fixes[2];
     hear(&truth, 1);
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_joint_sources(&sound, heard, NODES, expected, NULL, 2, fixes));
@@ -105,7 +119,7 @@ static void a_source_that_nobody_hears(void)
 static void what_is_refused(void)
 {
     const struct mh_vec2 truth = {50, 40}, bad = {INFINITY, 0};
-    struct mh_source source = {{52, 41}, {25, 0, 25}};
+    struct mh_source source = {{52, 41}, {25, 0, 25}, 0};
     struct mh_source_fix fix = {.covariance = {-7, 0, 0}};
     struct mh_sound silent = sound;
     hear(&truth, 1);
@@ -128,7 +142,7 @@ static void what_is_refused(void)
 static void degenerate_places_and_energies(void)
 {
     const struct mh_vec2 truth[2] = {{30, 30}, {30, 30}};
-    const struct mh_source expected[2] = {{{30, 30}, {25, 0, 25}}, {{30, 30}, {25, 0, 25}}};
+    const struct mh_source expected[2] = {{{30, 30}, {25, 0, 25}, 0}, {{30, 30}, {25, 0, 25}, 0}};
     struct mh_source_fix fixes[2];
     hear(truth, 2);
     heard[0].energy = 0;
@@ -161,6 +175,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(two_sources_half_a_range_apart);
+    RUN_TEST(two_at_one_place);
     RUN_TEST(as_many_as_there_is_room_for);
     RUN_TEST(information_of_one_source);
     RUN_TEST(a_source_that_nobody_hears);
