@@ -195,10 +195,12 @@ static void listen_among(const struct mh_acoustic *acoustic, bool jointly, const
                          size_t count, struct mh_acoustic_scene *scene)
 {
     const struct mh_acoustic_config *config = &acoustic->config;
+    /* n targets are heard farther away */
+    const mh_real group_reach = config->reach_m * mh_sqrt((mh_real)scene->own.group.count);
     for (size_t i = 0; i < count; i++) {
         struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
-        const bool own =
-            distance_to(&scene->own.group, mh_acoustic_position(&scene->own), heard.place) <= config->reach_m;
+        const mh_real off = distance_to(&scene->own.group, mh_acoustic_position(&scene->own), heard.place);
+        const bool own = off <= config->reach_m || (off <= group_reach && !is_others(scene, off, heard.place));
         bool near = own;
         for (uint8_t j = 0; j < scene->others_count && jointly && !near; j++) {
             const struct mh_acoustic_other *other = &scene->others[j];
