@@ -21,6 +21,10 @@
  * UNRESOLVED once two targets have been so near to each other that they may have exchanged their identifiers: from then on, for sound has no memory of who is who. `target`, `members`, `of`,
  * `extent` and `mode` as estimate.h says. A track without a fix for coast_s ends: step() gives MH_NONE, and the next one begins anew.
  *
+ * Groups (config.group; group.h), `acoustic` only: a track that begins, with nobody near, where one source explains the energies badly begins as a group of as many as source_count.h finds, up to
+ * MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
+ * part decides.
+ *
  * A saved track (numbers as bytes.h puts them): kind and mode (1), the time (4), place in mm (4 + 4), velocity (2 + 2, in 1/256 m/s), the covariance's factors (10 x 2), the last three speeds (3), then the
  * group (group.h): 42 bytes for a single target, MH_ACOUSTIC_SAVED_MAX at most. The filter works with what was saved: a step of the instance that saved and of one that loaded are the same.
  *

@@ -216,6 +216,9 @@ static enum mh_status locate(const struct mh_acoustic *acoustic, struct mh_acous
             acoustic->kind->reconsider(config, scene, fix);
         }
     }
+    if (status == MH_OK && !acoustic->tracking && config->group.mode != MH_GROUP_NONE && scene->alone) {
+        acoustic->kind->find_group(config, scene, fix);
+    }
     return status;
 }
 
