@@ -66,24 +66,24 @@ void mh_acoustic_find_group(const struct mh_acoustic_config *config, struct mh_a
 
 /* ---- a group by weights ---- */
 
-/* What is heard nearer to the own centroid than to another's -> heard; how many. */
-static size_t own_heard(const struct mh_acoustic_scene *scene, struct mh_heard *heard)
+/* What is heard nearer to another centroid than to the own one is left out. */
+static void leave_others(struct mh_acoustic_scene *scene)
 {
     size_t count = 0;
     const struct mh_vec2 own = mh_acoustic_position(&scene->own);
     for (size_t i = 0; i < scene->heard_count; i++) {
-        const struct mh_vec2 at = scene->heard[i].place;
-        const mh_real square = mh_squared(at.x - own.x) + mh_squared(at.y - own.y);
+        const struct mh_heard heard = scene->heard[i];
+        const mh_real square = mh_squared(heard.place.x - own.x) + mh_squared(heard.place.y - own.y);
         bool nearer = true;
         for (uint8_t j = 0; j < scene->others_count; j++) {
             const struct mh_vec2 other = scene->others[j].position;
-            nearer = nearer && square <= mh_squared(at.x - other.x) + mh_squared(at.y - other.y);
+            nearer = nearer && square <= mh_squared(heard.place.x - other.x) + mh_squared(heard.place.y - other.y);
         }
         if (nearer) {
-            heard[count++] = scene->heard[i];
+            scene->heard[count++] = heard;
         }
     }
-    return count;
+    scene->heard_count = count;
 }
 
 static struct mh_vec2 weighted_centroid(const struct mh_heard *heard, size_t count)
@@ -140,9 +140,10 @@ static void begin_two(const struct mh_group *group, struct mh_vec2 centroid, con
 enum mh_status mh_acoustic_weigh(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                                  mh_real seconds, struct mh_acoustic_fix *fix)
 {
-    struct mh_heard heard[MH_ACOUSTIC_HEARD_MAX];
     struct mh_group *group = &scene->own.group;
-    const size_t count = own_heard(scene, heard);
+    leave_others(scene);
+    const struct mh_heard *heard = scene->heard;
+    const size_t count = scene->heard_count;
     if (count == 0) {
         return MH_NONE;
     }
