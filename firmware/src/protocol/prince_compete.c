@@ -85,6 +85,10 @@ void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row)
 
 void mh_prince_hear_compete(struct mh_prince *p, const mh_compete_t *compete)
 {
+    const struct mh_place place = {compete->x_mm, compete->y_mm, 0};
+    if (compete->target == 0) {
+        mh_prince_recognise(p, &place, compete->value_q20);
+    }
     struct mh_prince_row *row =
         mh_prince_contest(p, (uint32_t)compete->target, (uint16_t)compete->generation, (mh_tick)compete->time_ms);
     const mh_node_id sender = (mh_node_id)compete->sender;

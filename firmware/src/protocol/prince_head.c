@@ -314,6 +314,9 @@ void mh_prince_hear_awake(struct mh_prince *p, const mh_awake_t *awake)
         mh_prince_clear(row, MH_PRINCE_ANNOUNCE);
         mh_prince_discard(p, row);
     }
+    if (awake->generation == 1 && mh_prince_claims(p, awake)) {
+        return;
+    }
     const bool was_fixed = row && row->fixed;
     if (!was_fixed) {
         drop_unfixed(p);

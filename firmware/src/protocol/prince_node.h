@@ -55,6 +55,13 @@ void mh_prince_sample(struct mh_prince *p, struct mh_prince_row *row, uint8_t wa
 /* How fast the target goes, m/s; 0: unknown. */
 mh_real mh_prince_speed(const struct mh_prince_row *row);
 
+/* Where the target is expected now, relative to `origin`, m. */
+struct mh_vec2 mh_prince_expected(const struct mh_prince *p, const struct mh_prince_row *row,
+                                  const struct mh_place *origin);
+
+/* How far off it may be, m: more the longer ago it was found, since it may have turned. */
+mh_real mh_prince_drift(const struct mh_prince *p, const struct mh_prince_row *row);
+
 /* What the row's target adds to the energy p->value, as predicted; *share of it (1: all) and the number of other targets that have one -> *others, both may be NULL. */
 mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *row, mh_real *share, uint8_t *others);
 
@@ -69,6 +76,9 @@ void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct m
 
 /* p->value is more than all targets that are known explain. */
 bool mh_prince_is_new(const struct mh_prince *p);
+
+/* Node at `place` hears something of this energy that it knows no target for: whom this head follows is said again, if that may be it. */
+void mh_prince_recognise(struct mh_prince *p, const struct mh_place *place, mh_q20 value);
 
 /* A tick: the sample is p->value. */
 void mh_prince_watch(struct mh_prince *p);
@@ -137,6 +147,9 @@ void mh_prince_hear_succeed(struct mh_prince *p, const mh_succeed_t *succeed);
 
 /* The estimate of a new head says that its target is to go on with another as a group, or that it is a group no more. */
 void mh_prince_regroup(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate);
+
+/* A new target was found where this head's may be: it is this head's, and is said so. Returns false if there is no such. */
+bool mh_prince_claims(struct mh_prince *p, const mh_awake_t *awake);
 
 void mh_prince_hear_merge(struct mh_prince *p, const mh_merge_t *merge);
 

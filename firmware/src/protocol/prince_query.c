@@ -2,14 +2,14 @@
 
 #include <string.h>
 
-#define RETRY_WAIT 500   /* ticks */
-#define RETRY_WATCH 2000 /* ticks for which who tries again stays at least */
-#define RELAY_PAUSE 3000 /* ticks between fail_t of who wins and gets no answers */
-#define PASSING 2000     /* ticks for which a target that was only heard of is remembered */
-#define SLOT 25          /* ticks between answers of nodes whose distances from the target differ by ... */
-#define SLOT_M 5.0f      /* ... m */
-#define SLOT_SPREAD 15   /* ticks over which those of one slot spread */
-#define LEAST_SHARE 0.6f /* of a target in the energy of an answer: less tells nothing of it */
+#define RETRY_WAIT 500    /* ticks */
+#define RETRY_WATCH 2000  /* ticks for which who tries again stays at least */
+#define RELAY_PAUSE 3000  /* ticks between fail_t of who wins and gets no answers */
+#define RELAY_TIME 20000  /* ticks after the last fix, in which they do so */
+#define PASSING 2000      /* ticks for which a target that was only heard of is remembered */
+#define SLOTS 12          /* of a window: between answers of nodes whose distances from the target differ by ... */
+#define SLOT_SHARE 0.125f /* ... of the sensing range */
+#define LEAST_SHARE 0.6f  /* of a target in the energy of an answer: less tells nothing of it */
 
 /* ---- answers ---- */
 
@@ -180,7 +180,8 @@ static void count_kind(struct mh_prince *p, uint8_t kind)
 static void lose(struct mh_prince *p, struct mh_prince_row *row)
 {
     mh_prince_hold_back(p, row);
-    if ((p->config->guards & MH_PRINCE_RELAY) && p->time - row->said >= RELAY_PAUSE) {
+    const bool stale = row->fixed && p->time - row->found > RELAY_TIME;
+    if ((p->config->guards & MH_PRINCE_RELAY) && !stale && p->time - row->said >= RELAY_PAUSE) {
         row->said = p->time;
         p->counters.relays++;
         mh_prince_say_fail(p, row);
@@ -281,10 +282,11 @@ void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
     if (mh_q20_to_real(p->value) < 1 || energy < LEAST_SHARE || row->state == MH_PRINCE_LOCATE) {
         return;
     }
+    const mh_tick slot = window_of(p, row) / SLOTS;
     const mh_real distance_m = mh_sqrt(p->config->loudness_m2 / energy);
+    const mh_tick slots = (mh_tick)(distance_m / (SLOT_SHARE * p->config->sensing_range_m));
     row->value = p->value;
-    mh_prince_set(row, MH_PRINCE_REPLY,
-                  p->time + SLOT * (mh_tick)(distance_m / SLOT_M) + mh_prince_wait(p, SLOT_SPREAD));
+    mh_prince_set(row, MH_PRINCE_REPLY, p->time + slot * slots + mh_prince_wait(p, slot / 5 * 3 + 1));
 }
 
 void mh_prince_reply(struct mh_prince *p, struct mh_prince_row *row)
@@ -296,7 +298,6 @@ void mh_prince_reply(struct mh_prince *p, struct mh_prince_row *row)
                                        .as.sound = {.sender = (int32_t)p->node->id,
                                                     .asker = (int32_t)row->asker,
                                                     .target = (int32_t)row->target,
-                                                    .generation = (int16_t)(uint16_t)(row->generation + 1u),
                                                     .time_ms = (int32_t)row->asked,
                                                     .x_mm = p->node->place.x_mm,
                                                     .y_mm = p->node->place.y_mm,
@@ -312,7 +313,7 @@ void mh_prince_hear_sound(struct mh_prince *p, const mh_sound_t *sound)
     if (!row || row->asker != (mh_node_id)sound->asker || row->asked != (mh_tick)sound->time_ms) {
         return;
     }
-    if (row->state == MH_PRINCE_LOCATE && row->asker == p->node->id) {
+    if (row->state == MH_PRINCE_LOCATE) {
         const struct mh_place place = {sound->x_mm, sound->y_mm, 0};
         mh_prince_collect(p, row, (mh_node_id)sound->sender, &place, sound->value_q20);
         return;

@@ -56,13 +56,16 @@ void mh_prince_decide_first(struct mh_prince *p, struct mh_prince_row *row)
 void mh_prince_hear_detection(struct mh_prince *p, const mh_detection_t *detection)
 {
     const mh_tick detected = (mh_tick)detection->detected_ms;
+    const struct mh_place place = {detection->x_mm, detection->y_mm, 0};
+    if (detection->target == 0) {
+        mh_prince_recognise(p, &place, detection->value_q20);
+    }
     struct mh_prince_row *row =
         mh_prince_contest(p, (uint32_t)detection->target, (uint16_t)detection->generation, detected);
     if (!row) {
         return;
     }
     const mh_node_id sender = (mh_node_id)detection->sender;
-    const struct mh_place place = {detection->x_mm, detection->y_mm, 0};
     mh_prince_collect(p, row, sender, &place, detection->value_q20);
     if (mh_prince_is_first(detected, sender, row->best_time, row->best)) {
         row->best = sender;

@@ -14,6 +14,7 @@
 #define OTHERS_WAIT 200   /* ticks in which somebody else may ask first */
 #define QUERY_REST 200    /* ticks after the window of a query that was heard, until the next */
 #define SLACK_M 10.0f     /* that a target may be off where it is expected */
+#define NEAR_SLACK_M 5.0f /* ... as far as a competitor and an outer node care */
 #define UNKNOWN_MPS 20.0f /* that a target may go where nothing is known of it */
 #define EXPLAINED 1.5f    /* times the energy expected of the targets that are known, and what is heard is one more */
 
@@ -22,12 +23,12 @@ mh_real mh_prince_speed(const struct mh_prince_row *row)
     return mh_sqrt(mh_squared((mh_real)row->vx_cmps) + mh_squared((mh_real)row->vy_cmps)) * 0.01f;
 }
 
-/* Where the target is expected now, relative to this node, m. */
-static struct mh_vec2 expected(const struct mh_prince *p, const struct mh_prince_row *row)
+struct mh_vec2 mh_prince_expected(const struct mh_prince *p, const struct mh_prince_row *row,
+                                  const struct mh_place *origin)
 {
     const struct mh_place fix = {row->x_mm, row->y_mm, 0};
     const mh_real seconds = mh_seconds_between(row->found, p->time);
-    struct mh_vec2 at = mh_place_relative(&fix, &p->node->place);
+    struct mh_vec2 at = mh_place_relative(&fix, origin);
     at.x += (mh_real)row->vx_cmps * 0.01f * seconds;
     at.y += (mh_real)row->vy_cmps * 0.01f * seconds;
     return at;
@@ -43,14 +44,14 @@ mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *other = &p->rows[i];
         if (other != row && other->state != MH_PRINCE_FREE && other->fixed) {
-            const struct mh_vec2 at = expected(p, other);
+            const struct mh_vec2 at = mh_prince_expected(p, other, &p->node->place);
             if (mh_squared(at.x) + mh_squared(at.y) <= mh_squared(range_m)) {
                 sources[count++] = at;
             }
         }
     }
     if (row->fixed) {
-        sources[0] = expected(p, row);
+        sources[0] = mh_prince_expected(p, row, &p->node->place);
         own = mh_sound_share(sources, count, 0, here, range_m);
     }
     if (share) {
@@ -62,18 +63,29 @@ mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *
     return own * mh_q20_to_real(p->value);
 }
 
-/* What is expected of all targets but `own`, each `slack_m` nearer than expected, and more so the longer ago it was found: it may have turned. */
-static mh_real explained(const struct mh_prince *p, const struct mh_prince_row *own, mh_real slack_m)
+mh_real mh_prince_drift(const struct mh_prince *p, const struct mh_prince_row *row)
+{
+    const mh_real speed_mps = mh_prince_speed(row), drift_mps = speed_mps > 0 ? speed_mps : UNKNOWN_MPS;
+    return SLACK_M + drift_mps * mh_seconds_between(row->found, p->time);
+}
+
+/* What is expected at `place` of a target that is `slack_m` nearer than expected. */
+static mh_real explained_by(const struct mh_prince *p, const struct mh_prince_row *row, const struct mh_place *place,
+                            mh_real slack_m)
+{
+    const struct mh_vec2 at = mh_prince_expected(p, row, place);
+    const mh_real distance_m = mh_sqrt(mh_squared(at.x) + mh_squared(at.y)) - slack_m;
+    return p->config->loudness_m2 * row->members / mh_squared(mh_max(distance_m, 1));
+}
+
+/* What is expected here of all targets but `own`. */
+static mh_real explained_by_others(const struct mh_prince *p, const struct mh_prince_row *own)
 {
     mh_real sum = 0;
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *row = &p->rows[i];
         if (row != own && row->state != MH_PRINCE_FREE && row->fixed) {
-            const struct mh_vec2 at = expected(p, row);
-            const mh_real speed_mps = mh_prince_speed(row), drift_mps = speed_mps > 0 ? speed_mps : UNKNOWN_MPS;
-            const mh_real nearer_m = slack_m > 0 ? slack_m + drift_mps * mh_seconds_between(row->found, p->time) : 0;
-            const mh_real distance_m = mh_sqrt(mh_squared(at.x) + mh_squared(at.y)) - nearer_m;
-            sum += p->config->loudness_m2 * row->members / mh_squared(mh_max(distance_m, 1));
+            sum += explained_by(p, row, &p->node->place, NEAR_SLACK_M);
         }
     }
     return sum;
@@ -82,11 +94,27 @@ static mh_real explained(const struct mh_prince *p, const struct mh_prince_row *
 bool mh_prince_is_new(const struct mh_prince *p)
 {
     bool waiting = false; /* there is one already */
+    mh_real sum = 0;
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
-        waiting = waiting || (p->rows[i].state != MH_PRINCE_FREE && !p->rows[i].fixed);
+        const struct mh_prince_row *row = &p->rows[i];
+        if (row->state != MH_PRINCE_FREE) {
+            waiting = waiting || !row->fixed;
+            sum += row->fixed ? explained_by(p, row, &p->node->place, mh_prince_drift(p, row)) : 0;
+        }
     }
     const mh_real energy = mh_q20_to_real(p->value);
-    return !waiting && energy >= 1 && energy > EXPLAINED * explained(p, NULL, SLACK_M);
+    return !waiting && energy >= 1 && energy > EXPLAINED * sum;
+}
+
+void mh_prince_recognise(struct mh_prince *p, const struct mh_place *place, mh_q20 value)
+{
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        struct mh_prince_row *row = &p->rows[i];
+        if (row->state == MH_PRINCE_HEAD &&
+            mh_q20_to_real(value) <= EXPLAINED * explained_by(p, row, place, mh_prince_drift(p, row))) {
+            mh_prince_remind(p, row);
+        }
+    }
 }
 
 /* The target may be within range, by where it was. */
@@ -105,7 +133,7 @@ bool mh_prince_hears(const struct mh_prince *p, const struct mh_prince_row *row)
     if (energy < 1 || others == 0) {
         return energy >= 1;
     }
-    return unforeseen ? energy > EXPLAINED * explained(p, row, 0) && (row->as == MH_NODE_COMPETITOR || own >= 1)
+    return unforeseen ? energy > EXPLAINED * explained_by_others(p, row) && (row->as == MH_NODE_COMPETITOR || own >= 1)
                       : own >= 1 && is_in_time(p, row);
 }
 

@@ -241,7 +241,6 @@ static struct mh_message sound(const struct mh_message *query, mh_node_id sender
                                        .as.sound = {.sender = (int32_t)sender,
                                                     .asker = query->as.locate.sender,
                                                     .target = query->as.locate.target,
-                                                    .generation = query->as.locate.generation,
                                                     .time_ms = query->as.locate.time_ms,
                                                     .x_mm = (int32_t)sender * 1000,
                                                     .value_q20 = mh_q20_from_real(2),

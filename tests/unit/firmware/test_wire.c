@@ -194,7 +194,6 @@ static struct mh_message example(enum mh_message_kind kind)
         const mh_sound_t sound = {.sender = 1,
                                   .asker = 2,
                                   .target = 3,
-                                  .generation = -4,
                                   .time_ms = 5,
                                   .x_mm = -6,
                                   .y_mm = 7,
