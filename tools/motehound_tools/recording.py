@@ -89,7 +89,7 @@ class Run:
             ]
         )
         self.sink = Table([("x", "f8"), ("y", "f8"), ("error", "f8")])  # what the sink has of the target
-        self.clusters = Table([("head", "i4"), ("members", "i4")])  # the second: which entry of the next
+        self.clusters = Table([("track", "i4"), ("head", "i4"), ("members", "i4")])  # the last: which entry of the next
         self.members: list[tuple[int, ...]] = []
         self.motes = Table([("node", "i4"), ("energy", "f8"), ("battery", "f8"), ("alive", "?"), ("clock_error", "f8")])
 
@@ -169,7 +169,7 @@ class Recording:
 
     def _cluster_t(self, run: Run, cluster: Any) -> None:
         run.members.append(tuple(cluster.members))
-        run.clusters.append((cluster.time_s, cluster.head, len(run.members) - 1))
+        run.clusters.append((cluster.time_s, cluster.track, cluster.head, len(run.members) - 1))
 
     def _mote_t(self, run: Run, mote: Any) -> None:
         run.motes.append((mote.time_s, mote.node, mote.energy_mj, mote.battery_left, mote.alive, mote.clock_error_ms))

@@ -14,7 +14,7 @@ from motehound_tools import recording
 from motehound_tools.event_log import EventLog
 from motehound_tools.recording import Recording, Table
 from motehound_tools.view import scene, targets
-from motehound_tools.view.colours import TARGETS, TRACK, TRUTH
+from motehound_tools.view.colours import CLUSTER, TARGETS, TRACK, TRUTH
 
 
 def taken(told: list) -> Recording:
@@ -151,6 +151,19 @@ def test_every_target_has_its_colour_and_a_group_its_extent() -> None:
     assert error["color"] == list(TARGETS[:3]) and [len(ys) for ys in error["ys"]] == [10, 7, 10]
 
 
+def test_each_target_has_its_cluster() -> None:
+    told = targets_run()
+    asked = [(4.0, 16, 24, [25, 26]), (4.0, 50, 86, [87]), (4.5, 16, 24, [25])]
+    for time_s, target, head, members in asked:
+        cluster = {"track": target, "head": head, "count": len(members), "members": members}
+        told.append(("CLUSTER", message("motehound.cluster_t", time_s=time_s, **cluster)))
+    run = taken(told).runs[0]
+    seen = scene.clusters(run, 4.2)
+    assert seen["members"]["color"] == seen["spokes"]["color"] == [TARGETS[0]] * 2 + [TARGETS[2]]
+    assert seen["members"]["x"] == [20.0, 40.0, 60.0] and seen["head"]["x"] == []
+    assert scene.clusters(run, 4.6)["members"]["color"] == [TARGETS[0], TARGETS[2]]
+
+
 def test_heads_princes_and_where_they_expect_the_target() -> None:
     run = taken(targets_run()).runs[0]
     seen = targets.watches(run, 4.5)
@@ -167,6 +180,11 @@ def test_heads_princes_and_where_they_expect_the_target() -> None:
     assert (y.min(), y.max()) == pytest.approx((51.0, 71.0))  # of a group the extent besides
     assert targets.watches(run, 10.5)["watch_heads"]["color"] == [TARGETS[0], TARGETS[2]]  # 33 is in the group
     assert targets.watches(run, 20.0 + 1.5 + targets.HELD_S + 0.1)["areas"]["xs"] == []
+    silent = [told for told in targets_run() if told[0] != "WATCH"]
+    watch = {"target": 50, "number": 2, "head": 85, "prince": 86, "prince_s": 4.0, "sd_m": math.nan}
+    unsure = taken([*silent, ("WATCH", message("motehound.watch_t", time_s=2.0, **watch))]).runs[0]
+    (told,) = targets.watched(unsure, 2.5)
+    assert told["sd"] == pytest.approx((5.0 / 2.0) ** 0.5)  # as its estimate, of 2 m and 1 m
     still = run.watch.until(0.0 + 2.0)[-1].copy()
     still["vx"] = 0.0
     assert np.hypot(targets.area(still)[0] - still["x"], targets.area(still)[1] - still["y"]) == pytest.approx(4.0)
@@ -182,12 +200,12 @@ def test_clusters_and_what_the_sink_has_at_a_time() -> None:
     run = taken(clustered_run()).runs[0]
     motes = scene.Motes(run)
     assert len(run.track) == 20 and len(run.sink) == 18  # what the sink has is not a track of its own
-    first, second = scene.cluster(run, motes, 9.9), scene.cluster(run, motes, 10.0)
-    assert [first["head"][axis].tolist() for axis in "xy"] == [[10.0], [10.0]]
-    assert [second["head"][axis].tolist() for axis in "xy"] == [[20.0], [20.0]]
-    assert [first["members"][axis].tolist() for axis in "xy"] == [[10.0, 0.0], [0.0, 10.0]]
-    assert [spoke.tolist() for spoke in first["spokes"]["xs"]] == [[10.0, 10.0], [10.0, 0.0]]
-    assert not len(scene.cluster(taken(small_run()).runs[0], motes, 5.0)["head"]["x"])
+    first, second = scene.clusters(run, 9.9), scene.clusters(run, 10.0)
+    assert [first["head"][axis] for axis in "xy"] == [[10.0], [10.0]]
+    assert [second["head"][axis] for axis in "xy"] == [[20.0], [20.0]]
+    assert [first["members"][axis] for axis in "xy"] == [[10.0, 0.0], [0.0, 10.0]]
+    assert first["spokes"]["xs"] == [(10.0, 10.0), (10.0, 0.0)] and first["spokes"]["color"] == [CLUSTER] * 2
+    assert not scene.clusters(taken(small_run()).runs[0], 5.0)["head"]["x"]
     assert not len(scene.sink_view(run, 1.9)["sink"]["x"])
     seen = scene.sink_view(run, 7.5)
     assert seen["sink"]["x"].tolist() == [6.0] and len(seen["sink_path"]["x"]) == 6

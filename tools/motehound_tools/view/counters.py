@@ -30,7 +30,8 @@ def figures(run: Run, motes: Motes, time: float) -> list[tuple[str, str]]:
     clusters = run.clusters.until(time)
     if len(clusters):
         found.append(("clusters", f"{len(clusters):,}"))
-        found.append(("members now", f"{len(run.members[clusters['members'][-1]]):,}"))
+        if not targets.are_told_apart(run):
+            found.append(("members now", f"{len(run.members[clusters['members'][-1]]):,}"))
     if len(run.motes):
         found.append(("energy spent", f"{np.nansum(motes.energy) / 1000.0:,.2f} J"))
     clock_errors = np.abs(motes.clock_error[np.isfinite(motes.clock_error)])

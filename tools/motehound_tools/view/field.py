@@ -138,12 +138,13 @@ class Field:
         here = self._source("here", "x y color")
         plot.scatter("x", "y", source=here, size=18, fill_color=None, line_width=3, **truth)
         self._watches(plot)
-        cluster = {"line_color": CLUSTER, "tags": ["cluster"]}
-        plot.multi_line("xs", "ys", source=self._source("spokes", "xs ys"), line_alpha=0.6, line_width=1.2, **cluster)
-        members = self._source("members", "x y")
-        plot.scatter("x", "y", source=members, size=9, fill_color=CLUSTER, fill_alpha=0.5, line_width=1.5, **cluster)
-        head = self._source("head", "x y")
-        plot.scatter("x", "y", source=head, size=15, marker="diamond", fill_color=CLUSTER, line_width=2, **cluster)
+        cluster = {"line_color": "color", "tags": ["cluster"]}
+        spokes = self._source("spokes", "xs ys color")
+        plot.multi_line("xs", "ys", source=spokes, line_alpha=0.6, line_width=1.2, **cluster)
+        members = self._source("members", "x y color")
+        plot.scatter("x", "y", source=members, size=9, fill_color="color", fill_alpha=0.5, line_width=1.5, **cluster)
+        head = {"source": self._source("head", "x y"), "size": 15, "marker": "diamond", "line_width": 2}
+        plot.scatter("x", "y", fill_color=CLUSTER, line_color=CLUSTER, tags=["cluster"], **head)
         sink = {"line_color": SINK, "tags": ["sink"]}
         path = self._source("sink_path", "x y")
         plot.line("x", "y", source=path, line_width=1.5, line_dash=[5, 3], **sink)
@@ -221,7 +222,7 @@ class Field:
         frames = scene.frames_in_air(run, motes, time, linger, colours)
         self.mote.fill_alpha = ASLEEP if len(run.clusters) or len(run.watch) else AWAKE
         layers = frames | targets.truths(run, time) | targets.tracks(run, time) | targets.watches(run, time)
-        layers |= scene.cluster(run, motes, time) | scene.sink_view(run, time)
+        layers |= scene.clusters(run, time) | scene.sink_view(run, time)
         for name, data in layers.items():
             if _rows(data) or _rows(self.sources[name].data):
                 self.sources[name].data = data

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..recording import Run
-from .targets import TRAIL_S, colour
+from .colours import CLUSTER
+from .targets import TRAIL_S, colour, watched
 
 POINTS_MAX = 2000  # of a line of the timeline
 FRAMES_MAX = 1500  # drawn at once; the newest ones
@@ -99,22 +100,31 @@ def frames_in_air(
     }
 
 
-def cluster(run: Run, motes: Motes, time: float) -> dict[str, dict[str, np.ndarray]]:
-    """The head and the members of the newest cluster, and a spoke from it to each of them."""
-    rows = run.clusters.until(time)[-1:]
-    nodes = np.array(
-        [*rows["head"], *(member for row in rows["members"] for member in run.members[row])], dtype=np.int64
-    )
-    at, known = motes.index(nodes)
-    places = motes.xy[at[known]] if len(motes.nodes) else np.zeros((0, 2))
-    has_head = len(known) > 0 and bool(known[0])
-    head, members = places[: int(has_head)], places[int(has_head) :]
-    spokes = [np.stack([head[0], member], axis=1) for member in members] if has_head else []
-    return {
-        "head": {"x": head[:, 0], "y": head[:, 1]},
-        "members": {"x": members[:, 0], "y": members[:, 1]},
-        "spokes": {"xs": [spoke[0] for spoke in spokes], "ys": [spoke[1] for spoke in spokes]},
-    }
+def clusters(run: Run, time: float) -> dict[str, dict[str, list]]:
+    """Of the newest cluster the head, the members and a spoke from it to each of them; where targets are watched, of each one's
+    newest all but the head, which is drawn as such."""
+    head: dict[str, list] = {"x": [], "y": []}
+    members: dict[str, list] = {"x": [], "y": [], "color": []}
+    spokes: dict[str, list] = {"xs": [], "ys": [], "color": []}
+    rows = run.clusters.until(time)
+    shown = [(rows[-1], CLUSTER)] if len(rows) and not len(run.watch) else []
+    for watch in watched(run, time):
+        mine = rows[rows["track"] == watch["target"]]
+        shown += [(mine[-1], colour(run, watch["target"]))] if len(mine) else []
+    for row, shade in shown:
+        middle = run.places.get(int(row["head"]))
+        if middle is not None and shade == CLUSTER:
+            head["x"].append(middle[0])
+            head["y"].append(middle[1])
+        for member in run.members[row["members"]]:
+            place = run.places.get(member)
+            if place is None:
+                continue
+            for columns, values in ((members, place), (spokes, tuple(zip(middle, place)) if middle else None)):
+                if values is not None:
+                    for field, value in zip(columns, (*values, shade)):
+                        columns[field].append(value)
+    return {"head": head, "members": members, "spokes": spokes}
 
 
 def sink_view(run: Run, time: float) -> dict[str, dict[str, np.ndarray]]:

@@ -127,14 +127,17 @@ def label(last: np.void) -> str:
 
 
 def watched(run: Run, time: float) -> list[np.void]:
-    """Of every target what its newest head has told, while it counts."""
+    """Of every target what its newest head has told, while it counts. Where it does not say how sure it is, that is as its estimate."""
     rows = run.watch.between(time - TRAIL_S, time)
-    followed = {int(last["target"]) for _, last in newest(run, time)}
+    followed = {int(last["target"]): last for _, last in newest(run, time)}
     found = []
     for target in np.unique(rows["target"]):
-        last = rows[rows["target"] == target][-1]
+        last = rows[rows["target"] == target][-1].copy()
         until = max(float(last["prince_s"]) if last["prince"] >= 0 else 0.0, float(last["time"])) + HELD_S
         if time <= until and int(target) in followed:
+            estimate = followed[int(target)]
+            if not np.isfinite(last["sd"]):
+                last["sd"] = np.sqrt(np.nan_to_num(estimate["xx"] + estimate["yy"]) / 2.0)
             found.append(last)
     return found
 
