@@ -2,6 +2,7 @@
 
 #include "ideal/cluster.h"
 #include "ideal/fixed.h"
+#include "ideal/prince.h"
 #include "ideal/token.h"
 
 #include <stdio.h>
@@ -11,7 +12,10 @@ static const struct {
     const char *protocol;
     int (*run)(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
                const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
-} modes[] = {{"cluster", ideal_cluster_run}, {"fixed", ideal_fixed_run}, {"token", ideal_token_run}};
+} modes[] = {{"cluster", ideal_cluster_run},
+             {"fixed", ideal_fixed_run},
+             {"prince", ideal_prince_run},
+             {"token", ideal_token_run}};
 
 int ideal_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
               const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size)

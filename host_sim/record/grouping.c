@@ -70,12 +70,24 @@ static int number_of(const struct walk *walk, int32_t identifier)
     return UNKNOWN;
 }
 
+static void learn_one(struct walk *walk, int32_t identifier, int32_t number)
+{
+    if (number >= 0 && (size_t)number < walk->targets && number_of(walk, identifier) == UNKNOWN &&
+        walk->identifier_count < IDENTIFIERS_MAX) {
+        walk->identifiers[walk->identifier_count] = identifier;
+        walk->numbers[walk->identifier_count++] = number;
+    }
+}
+
+/* In a group of all targets that was found as such it does not matter which is which. */
 static void learn(struct walk *walk, const motehound_track_t *track)
 {
-    if (!is_group(track) && track->number >= 0 && (size_t)track->number < walk->targets &&
-        number_of(walk, track->target) == UNKNOWN && walk->identifier_count < IDENTIFIERS_MAX) {
-        walk->identifiers[walk->identifier_count] = track->target;
-        walk->numbers[walk->identifier_count++] = track->number;
+    if (!is_group(track)) {
+        learn_one(walk, track->target, track->number);
+    }
+    const bool is_all = (size_t)track->members == walk->targets && walk->identifier_count == 0;
+    for (int32_t i = 0; is_group(track) && is_all && i < MH_GROUP_MAX && i < track->members; i++) {
+        learn_one(walk, track->of[i], i);
     }
 }
 
@@ -125,7 +137,7 @@ static bool take(struct walk *walk, const motehound_track_t *track)
     for (size_t i = 0; i < count; i++) {
         struct told *told = &walk->told[numbers[i]];
         changes = changes || (told->known && told->mode != track->mode);
-        *told = (struct told){true, is_group(track), track->target, track->mode};
+        *told = (struct told){!(track->flags & MH_ESTIMATE_STARTED), is_group(track), track->target, track->mode};
     }
     return changes;
 }

@@ -9,7 +9,8 @@
 
 #define LEAST_ENERGY 1.0f /* what a node reports */
 #define LEAST_SHARE 0.6f  /* of a target's sound at a node, units of energy */
-#define UNEXPLAINED 1.5f  /* so much more than the others' sound is that of a new target */
+#define TRIGGER_M 10.0f  /* a share counts at nodes that expect the target within sensing range, give or take so much */
+#define UNEXPLAINED 1.5f /* so much more than the others' sound is that of a new target */
 
 /* Of a target that is not where it is expected: how far off its loudest node can be; and how far from the target that is, so that all others that hear it are
  * within reach_m of there, sensing ranges. */
@@ -195,18 +196,20 @@ static void listen_among(const struct mh_acoustic *acoustic, bool jointly, const
                          size_t count, struct mh_acoustic_scene *scene)
 {
     const struct mh_acoustic_config *config = &acoustic->config;
+    const bool in_shares = !jointly && config->separation == MH_SEPARATION_DECOMPOSITION;
+    const mh_real reach = in_shares ? mh_min(config->reach_m, config->sensing_range_m + TRIGGER_M) : config->reach_m;
     /* n targets are heard farther away */
-    const mh_real group_reach = config->reach_m * mh_sqrt((mh_real)scene->own.group.count);
+    const mh_real group_reach = reach * mh_sqrt((mh_real)scene->own.group.count);
     for (size_t i = 0; i < count; i++) {
         struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
         const mh_real off = distance_to(&scene->own.group, mh_acoustic_position(&scene->own), heard.place);
-        const bool own = off <= config->reach_m || (off <= group_reach && !is_others(scene, off, heard.place));
+        const bool own = off <= reach || (off <= group_reach && !is_others(scene, off, heard.place));
         bool near = own;
         for (uint8_t j = 0; j < scene->others_count && jointly && !near; j++) {
             const struct mh_acoustic_other *other = &scene->others[j];
-            near = other->near && distance_to(&other->group, other->position, heard.place) <= config->reach_m;
+            near = other->near && distance_to(&other->group, other->position, heard.place) <= reach;
         }
-        if (near && !jointly && config->separation == MH_SEPARATION_DECOMPOSITION) {
+        if (near && in_shares) {
             heard.energy *= own_share(acoustic, scene, heard.place);
             near = heard.energy >= LEAST_SHARE;
         }
