@@ -15,7 +15,8 @@
  *     inner, border    regent: when the prince is overdue by a second and up to 0.5 s more, border 0.3 s later still
  *     competitor       by the election: COMPETITION: after a back-off of up to `contest` it says its energy (compete_t), unless three others have; soon after, the strongest
  *                      asks. TIMESTAMP: as prince_stamp.c has it.
- * Who hears locate_t samples; hearing the target it answers (sound_t), the nearer the sooner, unless `replies` others have. The locator collects for `window`. With two answers and more
+ * Who hears locate_t samples; hearing the target it answers (sound_t), the nearer the sooner, unless `replies` others have; in turn of where the neighbours and
+ * the target are expected to be, or where that says nothing (exceptions, competitions), by the energy. The locator collects for `window`. With two answers and more
  * the port localises the target, the locator is head, tells the old one (succeed_t; whoever overhears it waits for the new awake_t) and all (awake_t). Else it tries once more if
  * it still hears the target; then it says fail_t, and all who hear that are competitors for 10 s.
  *
@@ -118,7 +119,7 @@ struct mh_prince_config {
     mh_real step_m;          /* L_step: the way that the target goes between fixes, 1 to 10,000. Nominal 1.5 R */
     mh_tick tick;    /* between samples of a watcher, which are at its whole multiples. 20 to 60,000, nominal 250 */
     mh_tick window;  /* answers are waited for so long, twice as long those about groups. 20 to 10,000, nominal 300 */
-    mh_tick contest; /* longest back-off of a competitor, 1 to 10,000. Nominal 250 */
+    mh_tick contest; /* longest back-off of a competitor, 1 to 10,000. Nominal 350 */
     mh_tick watch_period; /* who does not watch samples so often: 0 (never), or a tick to an hour. Nominal 0 */
     mh_tick wake_period,
         wake_length;      /* of wake windows (rendezvous.h); period 0: radios listen all the time. Nominal 0 */
@@ -188,9 +189,10 @@ struct mh_prince_row {
 
     /* a query heard, to be answered; a query sent: asker is this node */
     mh_node_id asker;
-    mh_tick asked;     /* its time */
-    uint8_t overheard; /* answers to it */
-    mh_q20 value;      /* this node's energy: of the answer, or what it competes with */
+    mh_tick asked;      /* its time ... */
+    uint16_t asked_for; /* ... and generation */
+    uint8_t overheard;  /* answers to it */
+    mh_q20 value;       /* this node's energy: of the answer, or what it competes with */
 
     /* a competition: */
     uint8_t contenders; /* heard */

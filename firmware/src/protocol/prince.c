@@ -213,6 +213,51 @@ static bool searches(const struct mh_prince *p, bool *later, mh_tick *next)
     return false;
 }
 
+/* Who does not watch looks for new targets at an instant of its own in each watch period -> the first of these after `time`. */
+static mh_tick own_instant(const struct mh_prince *p, mh_tick time)
+{
+    const mh_tick tick = p->config->tick, turns = p->config->watch_period / tick;
+    return mh_tick_aligned(mh_spread(p->node->id, 0, turns) * tick, turns * tick, time + 1);
+}
+
+/* A target that is not yet named. */
+static struct mh_prince_row *begin_new(struct mh_prince *p)
+{
+    struct mh_prince_row *row = mh_prince_find_or_make(p, 0, true, p->time + NEW_TIME);
+    if (row) {
+        mh_prince_become_competitor(p, row, NEW_TIME);
+    }
+    return row;
+}
+
+struct mh_prince_row *mh_prince_find_new(struct mh_prince *p)
+{
+    struct mh_prince_row *row = NULL;
+    bool later;
+    mh_tick next;
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        if (p->rows[i].state != MH_PRINCE_FREE && !p->rows[i].fixed) {
+            row = &p->rows[i];
+        }
+    }
+    if (!row && searches(p, &later, &next)) {
+        row = begin_new(p);
+    }
+    return row;
+}
+
+/* Whoever looks for new targets now, and hears one that no row explains. */
+static void find(struct mh_prince *p)
+{
+    bool later;
+    mh_tick next;
+    const bool looks =
+        searches(p, &later, &next) || (p->config->watch_period > 0 && own_instant(p, p->sampled - 1) == p->sampled);
+    if (looks && mh_prince_is_new(p)) {
+        (void)begin_new(p);
+    }
+}
+
 static bool watches(const struct mh_prince *p)
 {
     bool any = false;
@@ -229,13 +274,6 @@ static bool is_idle(const struct mh_prince *p)
         idle = idle && p->rows[i].state <= MH_PRINCE_SLEEP;
     }
     return idle;
-}
-
-/* Who does not watch looks for new targets at an instant of its own in each watch period -> the first of these after `time`. */
-static mh_tick own_instant(const struct mh_prince *p, mh_tick time)
-{
-    const mh_tick tick = p->config->tick, turns = p->config->watch_period / tick;
-    return mh_tick_aligned(mh_spread(p->node->id, 0, turns) * tick, turns * tick, time + 1);
 }
 
 /* When the next tick is for this node -> *next. Returns false if there is none. */
@@ -321,7 +359,7 @@ void mh_prince_config_default(struct mh_prince_config *config, enum mh_prince_el
         .step_m = 1.5f * sensing_range_m,
         .tick = 250,
         .window = 300,
-        .contest = 250,
+        .contest = 350,
         .hello_period = 300000,
     };
     *config = nominal;
@@ -511,21 +549,6 @@ static void timer(void *state, mh_tick now)
         sense(p);
     }
     arm(p);
-}
-
-/* Whoever looks for new targets now, and hears one that no row explains. */
-static void find(struct mh_prince *p)
-{
-    bool later;
-    mh_tick next;
-    const bool looks =
-        searches(p, &later, &next) || (p->config->watch_period > 0 && own_instant(p, p->sampled - 1) == p->sampled);
-    if (looks && mh_prince_is_new(p)) {
-        struct mh_prince_row *row = mh_prince_find_or_make(p, 0, true, p->time + NEW_TIME);
-        if (row) {
-            mh_prince_become_competitor(p, row, NEW_TIME);
-        }
-    }
 }
 
 static enum mh_status publish(void *state, mh_tick now, const struct mh_measurement *measurement)

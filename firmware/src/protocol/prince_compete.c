@@ -2,6 +2,7 @@
 
 #define DECIDE_WAIT 150   /* ticks after the back-offs of all, ... */
 #define DECIDE_SPREAD 200 /* ... and up to so many more, until the winner acts */
+#define ASK_WAIT 100      /* ticks until it has been heard to ask */
 #define HOLD 750          /* ticks for which who has lost does not compete, ... */
 #define HOLD_SPREAD 500   /* ... and up to so many more */
 
@@ -27,7 +28,7 @@ void mh_prince_hold_back(struct mh_prince *p, struct mh_prince_row *row)
 
 struct mh_prince_row *mh_prince_contest(struct mh_prince *p, uint32_t target, uint16_t generation, mh_tick time)
 {
-    struct mh_prince_row *row = mh_prince_find(p, target);
+    struct mh_prince_row *row = target == 0 ? mh_prince_find_new(p) : mh_prince_find(p, target);
     if (!row || !mh_prince_is_fresh(p, time)) {
         return NULL;
     }
@@ -36,6 +37,8 @@ struct mh_prince_row *mh_prince_contest(struct mh_prince *p, uint32_t target, ui
         return NULL;
     }
     if (row->act != MH_PRINCE_ACT_CONTEND && row->act != MH_PRINCE_ACT_DECIDE) {
+        const mh_tick over = time + p->config->contest + DECIDE_WAIT + DECIDE_SPREAD + ASK_WAIT;
+        row->hold = mh_tick_before(row->hold, over) ? over : row->hold; /* too late for this one */
         return NULL;
     }
     row->contenders = (uint8_t)(row->contenders + (row->contenders < UINT8_MAX));
@@ -68,8 +71,10 @@ void mh_prince_say_compete(struct mh_prince *p, struct mh_prince_row *row)
                                                           .y_mm = p->node->place.y_mm,
                                                           .value_q20 = row->value}};
         mh_prince_send(p, &message);
+        mh_prince_plan_decision(p, row, row->best_time);
+    } else {
+        mh_prince_hold_back(p, row);
     }
-    mh_prince_plan_decision(p, row, row->best_time);
 }
 
 void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row)

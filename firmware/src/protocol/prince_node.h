@@ -41,6 +41,9 @@ struct mh_prince_row *mh_prince_find(struct mh_prince *p, uint32_t target);
 /* The same, or a new one, asleep, for a target that is out of range at `out`, and that is to be watched or not; another row may give way. NULL if none can. */
 struct mh_prince_row *mh_prince_find_or_make(struct mh_prince *p, uint32_t target, bool watched, mh_tick out);
 
+/* The row of a target without a fix, named or not; where new targets are looked for, one that is not yet named. NULL if there is none, and no room. */
+struct mh_prince_row *mh_prince_find_new(struct mh_prince *p);
+
 /* Forget a target. */
 void mh_prince_drop(struct mh_prince *p, struct mh_prince_row *row);
 

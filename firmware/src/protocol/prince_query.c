@@ -2,14 +2,16 @@
 
 #include <string.h>
 
-#define RETRY_WAIT 500    /* ticks */
-#define RETRY_WATCH 2000  /* ticks for which who tries again stays at least */
-#define RELAY_PAUSE 3000  /* ticks between fail_t of who wins and gets no answers */
-#define RELAY_TIME 20000  /* ticks after the last fix, in which they do so */
-#define PASSING 2000      /* ticks for which a target that was only heard of is remembered */
-#define SLOTS 12          /* of a window: between answers of nodes whose distances from the target differ by ... */
-#define SLOT_SHARE 0.125f /* ... of the sensing range */
-#define LEAST_SHARE 0.6f  /* of a target in the energy of an answer: less tells nothing of it */
+#define RETRY_WAIT 500   /* ticks */
+#define RETRY_WATCH 2000 /* ticks for which who tries again stays at least */
+#define RELAY_PAUSE 3000 /* ticks between fail_t of who wins and gets no answers */
+#define RELAY_TIME 20000 /* ticks after the last fix, in which they do so */
+#define PASSING 2000     /* ticks for which a target that was only heard of is remembered */
+#define RANKS 8          /* of a window: between answers of nodes by rank */
+#define SLOTS_SHARE                                                                                                    \
+    0.85f /* of a window, over which answers spread by energy: evenly, since the square of the distance is 1 / energy */
+#define SLOT_SPREAD 8    /* ticks by which those of equal energy differ */
+#define LEAST_SHARE 0.6f /* of a target in the energy of an answer: less tells nothing of it */
 
 /* ---- answers ---- */
 
@@ -152,6 +154,7 @@ void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row)
     row->state = MH_PRINCE_LOCATE;
     row->asker = p->node->id;
     row->asked = p->sampled;
+    row->asked_for = (uint16_t)(row->generation + 1u);
     row->queried = p->time;
     mh_prince_clear(row, MH_PRINCE_ACT);
     row->act = MH_PRINCE_ACT_NONE;
@@ -219,28 +222,30 @@ void mh_prince_close(struct mh_prince *p, struct mh_prince_row *row)
 
 /* ---- who is asked ---- */
 
-/* Two ask about one target: the first of them goes on. */
+/* Several ask about one target: the first of them goes on, and is answered. A query that is over, or for a generation before, does not count. */
 static bool yields(const struct mh_prince *p, const struct mh_prince_row *row, const mh_locate_t *locate)
 {
-    const int16_t ahead = mh_prince_ahead((uint16_t)locate->generation, (uint16_t)(row->generation + 1u));
-    return ahead > 0 ||
-           mh_prince_is_first((mh_tick)locate->time_ms, (mh_node_id)locate->sender, row->asked, p->node->id);
+    const bool open = row->state == MH_PRINCE_LOCATE || p->time - row->queried < window_of(p, row);
+    const int16_t ahead = mh_prince_ahead((uint16_t)locate->generation, row->asked_for);
+    return !open || ahead > 0 ||
+           (ahead == 0 &&
+            mh_prince_is_first((mh_tick)locate->time_ms, (mh_node_id)locate->sender, row->asked, row->asker));
 }
 
-/* A target that was not known here, or not by that name. */
+/* A target that was not known here, or not by that name: this node may have named it, too, or be about to. */
 static struct mh_prince_row *row_of_stranger(struct mh_prince *p, const mh_locate_t *locate)
 {
-    struct mh_prince_row *row = mh_prince_find(p, 0);
-    if (row && locate->generation == 1) {
+    struct mh_prince_row *row = locate->generation == 1 ? mh_prince_find_new(p) : NULL;
+    if (!row) {
+        row = mh_prince_find_or_make(p, (uint32_t)locate->target, false, p->time + PASSING);
+        if (row) {
+            mh_prince_become_competitor(p, row, PASSING);
+            row->generation = (uint16_t)(locate->generation - 1);
+        }
+    } else if (yields(p, row, locate)) {
         row->target = (uint32_t)locate->target;
-        return row;
     }
-    row = mh_prince_find_or_make(p, (uint32_t)locate->target, false, p->time + PASSING);
-    if (row) {
-        mh_prince_become_competitor(p, row, PASSING);
-        row->generation = (uint16_t)(locate->generation - 1);
-    }
-    return row;
+    return row && row->target == (uint32_t)locate->target ? row : NULL;
 }
 
 void mh_prince_hear_locate(struct mh_prince *p, const mh_locate_t *locate)
@@ -257,11 +262,10 @@ void mh_prince_hear_locate(struct mh_prince *p, const mh_locate_t *locate)
         mh_prince_remind(p, row);
         return;
     }
-    row->queried = p->time;
+    if (!yields(p, row, locate)) {
+        return;
+    }
     if (row->state == MH_PRINCE_LOCATE) {
-        if (!yields(p, row, locate)) {
-            return;
-        }
         mh_prince_discard(p, row);
         row->state = MH_PRINCE_WATCH;
         if (!mh_prince_is_set(row, MH_PRINCE_QUIET)) {
@@ -269,11 +273,44 @@ void mh_prince_hear_locate(struct mh_prince *p, const mh_locate_t *locate)
         }
     }
     mh_prince_calm(row);
+    row->queried = p->time;
     row->is_prince = row->is_prince && locate->kind != MH_LOCATE_EXCEPTION;
+    row->kind = locate->kind;
     row->asker = (mh_node_id)locate->sender;
     row->asked = (mh_tick)locate->time_ms;
+    row->asked_for = (uint16_t)locate->generation;
     row->overheard = 0;
     mh_prince_sample(p, row, MH_PRINCE_WANTS_REPLY);
+}
+
+/* How many of the neighbours are expected to be nearer to the target than this node is, but for who asks. */
+static uint8_t rank(const struct mh_prince *p, const struct mh_prince_row *row)
+{
+    const struct mh_vec2 here = mh_prince_expected(p, row, &p->node->place);
+    const mh_real own = mh_squared(here.x) + mh_squared(here.y);
+    uint8_t nearer = 0;
+    for (uint8_t i = 0; i < p->neighbours.count; i++) {
+        const struct mh_neighbour *neighbour = &p->neighbours.list[i];
+        const struct mh_place place = {neighbour->x_mm, neighbour->y_mm, 0};
+        const struct mh_vec2 there = mh_prince_expected(p, row, &place);
+        const mh_real square = mh_squared(there.x) + mh_squared(there.y);
+        nearer = (uint8_t)(nearer + (neighbour->id != row->asker &&
+                                     (square < own || (square == own && neighbour->id < p->node->id))));
+    }
+    return nearer;
+}
+
+/* The nearer the sooner: by rank where the target is where it is expected, else by the energy. */
+static mh_tick reply_wait(struct mh_prince *p, const struct mh_prince_row *row, mh_real energy)
+{
+    const mh_tick window = window_of(p, row);
+    if (mh_prince_speed(row) > 0 && (row->kind == MH_LOCATE_PRINCE || row->kind == MH_LOCATE_REGENT)) {
+        const uint8_t slot = rank(p, row);
+        if (slot < RANKS) {
+            return window / RANKS * slot;
+        }
+    }
+    return (mh_tick)(SLOTS_SHARE * (mh_real)window / mh_max(energy, 1)) + mh_prince_wait(p, SLOT_SPREAD);
 }
 
 void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
@@ -282,11 +319,8 @@ void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
     if (mh_q20_to_real(p->value) < 1 || energy < LEAST_SHARE || row->state == MH_PRINCE_LOCATE) {
         return;
     }
-    const mh_tick slot = window_of(p, row) / SLOTS;
-    const mh_real distance_m = mh_sqrt(p->config->loudness_m2 / energy);
-    const mh_tick slots = (mh_tick)(distance_m / (SLOT_SHARE * p->config->sensing_range_m));
     row->value = p->value;
-    mh_prince_set(row, MH_PRINCE_REPLY, p->time + slot * slots + mh_prince_wait(p, slot / 5 * 3 + 1));
+    mh_prince_set(row, MH_PRINCE_REPLY, p->time + reply_wait(p, row, energy));
 }
 
 void mh_prince_reply(struct mh_prince *p, struct mh_prince_row *row)

@@ -318,6 +318,13 @@ static void become_head(void)
     TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET));
 }
 
+static void hello_of(mh_node_id id, int32_t x_mm)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
+                                       .as.hello = {.sender = (int32_t)id, .x_mm = x_mm, .y_mm = 5000}};
+    hear(&message);
+}
+
 /* ---- who watches ---- */
 
 static void hellos_go_at_the_start_and_then_rarely(void)
@@ -473,7 +480,7 @@ static void the_strongest_competitor_asks(void)
     run_until(saw.time + 250);
     TEST_ASSERT_EQUAL(MH_PRINCE_ACT_CONTEND, row_of(TARGET)->act);
     tell_the(compete(6, OTHER, 1.9f));
-    run_until(saw.time + 250);
+    run_until(saw.time + 350);
     TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_COMPETE]);
     run_until_it_asks(360);
     TEST_ASSERT_EQUAL(MH_LOCATE_COMPETITION, saw.last[MH_MESSAGE_LOCATE].as.locate.kind);
@@ -489,7 +496,7 @@ static void who_is_weaker_holds_back(void)
     saw.energy = 2;
     run_until(saw.time + 250);
     tell_the(compete(6, OTHER, 2.1f));
-    run_until(saw.time + 610);
+    run_until(saw.time + 710);
     TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_LOCATE]);
     TEST_ASSERT_EQUAL(MH_PRINCE_ACT_NONE, row_of(TARGET)->act);
     TEST_ASSERT_TRUE(mh_tick_before(saw.time, row_of(TARGET)->hold));
@@ -514,19 +521,35 @@ static void who_hears_the_target_answers_the_nearer_the_sooner(void)
     static const struct {
         mh_real energy;
         mh_tick slot;
-    } cases[] = {{1.01f, 175}, {4.01f, 75}, {1600, 0}};
+    } cases[] = {{1.01f, 252}, {4.01f, 63}, {1600, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         tell_the(awake((int16_t)(2 * i), HEAD, NEXT));
         saw.energy = cases[i].energy;
-        tell_the(locate((int16_t)(2 * i + 1), OTHER, MH_LOCATE_PRINCE));
+        tell_the(locate((int16_t)(2 * i + 1), OTHER, MH_LOCATE_EXCEPTION));
         run_until(saw.time + cases[i].slot - (cases[i].slot > 0));
         TEST_ASSERT_EQUAL(i, saw.of_kind[MH_MESSAGE_SOUND]);
-        run_until(saw.time + 16);
+        run_until(saw.time + 9);
         TEST_ASSERT_EQUAL(i + 1, saw.of_kind[MH_MESSAGE_SOUND]);
         TEST_ASSERT_EQUAL_INT32(OTHER, saw.last[MH_MESSAGE_SOUND].as.sound.asker);
         TEST_ASSERT_EQUAL(255, saw.last[MH_MESSAGE_SOUND].as.sound.share);
     }
     TEST_ASSERT_EQUAL_INT32(INT32_MAX, mh_q20_from_real(1e9f)); /* saturated is nearest */
+}
+
+/* In slots of 37 ticks, by where the neighbours and the target are expected to be, not by what is heard. */
+static void where_the_target_is_expected_the_nearest_answer_in_turn(void)
+{
+    hello_of(OTHER, 20000); /* asks */
+    hello_of(THIRD, 30000);
+    hello_of(NEXT, 70000);
+    tell_the(awake(5, HEAD, NEXT));
+    saw.energy = 2;
+    run_until(saw.time + 1000); /* at 10, 0 */
+    tell_the(locate(6, OTHER, MH_LOCATE_PRINCE));
+    run_until(saw.time + 36);
+    TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_SOUND]);
+    run_until(saw.time + 1);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_SOUND]);
 }
 
 static void who_does_not_hear_it_is_silent(void)
@@ -766,13 +789,6 @@ static void a_head_that_nobody_relieves_says_so(void)
     TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(TARGET));
     TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_FAIL]);
     TEST_ASSERT_EQUAL(1, state.counters.watchdogs);
-}
-
-static void hello_of(mh_node_id id, int32_t x_mm)
-{
-    const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
-                                       .as.hello = {.sender = (int32_t)id, .x_mm = x_mm, .y_mm = 5000}};
-    hear(&message);
 }
 
 /* Found at 0, 0 with 10 m/s: who stands at x is reached after x - 39.7 m. */
@@ -1033,6 +1049,7 @@ int main(void)
     RUN_TEST(who_is_weaker_holds_back);
     RUN_TEST(three_competitors_are_enough);
     RUN_TEST(who_hears_the_target_answers_the_nearer_the_sooner);
+    RUN_TEST(where_the_target_is_expected_the_nearest_answer_in_turn);
     RUN_TEST(who_does_not_hear_it_is_silent);
     RUN_TEST(answers_that_are_enough_keep_others_silent);
     RUN_TEST(a_query_keeps_others_from_asking);
