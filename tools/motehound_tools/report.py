@@ -189,6 +189,8 @@ HEADLINES_OF_TARGETS = (
     ("double_heads", "generations with two heads", "%"),
 )
 
+OF_SEVERAL = ("success", "identity_swaps", "unresolved")
+
 FACTS_OF_CONCENTRATIONS = (
     ("speed", "source", "speed_mps", " m/s"),
     ("relative noise", "sensor", "relative_noise", ""),
@@ -228,7 +230,8 @@ def headlines(results: Output) -> tuple[tuple[str, str, str], ...]:
     if results.is_search:
         return HEADLINES_OF_SEARCHES
     if results.is_heard:
-        return HEADLINES_OF_TARGETS
+        alone = results.scenario and results.scenario.sections.get("target", {}).get("count") == 1
+        return tuple(head for head in HEADLINES_OF_TARGETS if not (alone and head[0] in OF_SEVERAL))
     return HEADLINES_OF_CLUSTERS if results.is_fixed else HEADLINES
 
 
@@ -294,6 +297,8 @@ def facts(results: Output, varied: str) -> list[tuple[str, str]]:
         ):
             if key in scenario.get(section, {}) and f"{section}.{key}" != varied:
                 value = scenario[section][key]
+                if (section, key) == ("network", "nodes") and scenario[section].get("layout") == "strat":
+                    value = scenario[section]["grid"] ** 2
                 said.append((label, f"{value:g}{unit}" if isinstance(value, (int, float)) else f"{value}{unit}"))
     return said
 
@@ -307,7 +312,7 @@ def pictures(results: Output) -> list[Picture]:
         return [picture for picture in drawn if picture]
     if results.is_heard:
         drawn = [target_figures.field_picture(results), target_figures.heads_picture(results)]
-        drawn += [target_figures.modes_picture(results), figures.error_picture(results)]
+        drawn += [target_figures.modes_picture(results), target_figures.error_picture(results)]
         drawn += [figures.distribution_picture(results)]
         return [picture for picture in drawn if picture]
     if results.is_fixed:

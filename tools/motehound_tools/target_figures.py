@@ -8,17 +8,21 @@ import numpy as np
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from .figures import QUIET, TRUTH, Picture, metres, svg_text
+from .figures import QUIET, TRUTH, Picture, metres, plain_log, svg_text
+from .metrics import errors
 from .output import Output, read_table
 from .scenario import Array
 
 COLOURS = ("#d6246e", "#00a58e", "#e8710a", "#3b6fe0", "#8d5bd6", "#7a6a00", "#8c564b", "#59626e")
 MODES = ("single", "sparse", "group")
 LOST_M = 150.0  # a target that goes on for so long without an estimate is lost
+WIDTH = 6.2  # inches, of a map
 EXTENTS = 12  # circles of each group, at most
+POINTS, BINS = 4000, 30  # of the errors, and of their median
 PLACES = ("x_m", "y_m")
 
 Table = dict[str, Array]
@@ -71,10 +75,8 @@ def colour(number: float) -> str:
     return COLOURS[int(number) % len(COLOURS)] if np.isfinite(number) and number >= 0 else QUIET
 
 
-def _legend(axes: Axes, extra: list[Line2D]) -> None:
-    axes.legend(
-        handles=extra, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4, handletextpad=0.5, columnspacing=1.3
-    )
+def _legend(figure: Figure, shown: list[Line2D]) -> None:
+    figure.legend(handles=shown, loc="outside lower center", ncols=4, handletextpad=0.5, columnspacing=1.3)
 
 
 def _ground(axes: Axes, output: Output) -> None:
@@ -91,6 +93,8 @@ def _close(axes: Axes, true: Table) -> None:
     room = 0.08 * float((high - low).max()) + 40.0
     axes.set_xlim(low[0] - room, high[0] + room)
     axes.set_ylim(low[1] - room, high[1] + room)
+    wide, tall = high - low + 2.0 * room
+    axes.figure.set_size_inches(WIDTH, float(np.clip(WIDTH * tall / wide + 0.6, 2.4, 7.0)))
 
 
 def _draw_truth(axes: Axes, true: Table, grey: bool = False) -> None:
@@ -106,7 +110,7 @@ def field_picture(output: Output) -> Picture | None:
     if true is None or not (true["run"] == run).any():
         return None
     true, track = where(true, true["run"] == run), output.one_run(run)
-    figure, axes = pyplot.subplots(figsize=(6.2, 5.6))
+    figure, axes = pyplot.subplots(figsize=(WIDTH, WIDTH), layout="constrained")
     _ground(axes, output)
     if is_scattered(output):
         return _scattered_picture(figure, axes, true, track, run)
@@ -135,25 +139,25 @@ def field_picture(output: Output) -> Picture | None:
         Line2D([], [], color="#b6bcc4", marker="o", markersize=3, linewidth=0, label="motes"),
     ]
     shown += [Line2D([], [], color=QUIET, linestyle="--", label="extent of a group")] if groups else []
-    _legend(axes, shown)
+    _legend(figure, shown)
     count = len(np.unique(true["target"]))
-    return Picture(
-        "Targets",
-        svg_text(figure),
-        f"Run {run}: {count} target{'s' if count > 1 else ''}, each in its colour, and the estimates in the colour of the "
-        "target they were first taken for, with the identifier that the network gave it: a line of one colour on a path "
-        "of another was exchanged.",
-    )
+    said = "the target and the estimates of it, with the identifier that the network gave it."
+    if count > 1:
+        said = (
+            f"{count} targets, each in its colour, and the estimates in the colour of the target they were first taken for, "
+            "with the identifier that the network gave it: a line of one colour on a path of another was exchanged."
+        )
+    return Picture("Targets", svg_text(figure), f"Run {run}: {said}")
 
 
-def _scattered_picture(figure, axes: Axes, true: Table, track: Table, run: int) -> Picture:  # type: ignore[no-untyped-def]
+def _scattered_picture(figure: Figure, axes: Axes, true: Table, track: Table, run: int) -> Picture:
     axes.scatter(true["x_m"], true["y_m"], s=12, color=TRUTH, linewidths=0, zorder=3)
     known = np.isfinite(track["true_x_m"])
     ends = [np.stack([track[f"{end}x_m"][known], track[f"{end}y_m"][known]], axis=-1) for end in ("true_", "")]
     axes.add_collection(LineCollection(list(np.stack(ends, axis=1)), colors=COLOURS[0], linewidths=1.0, zorder=4))
     axes.scatter(track["x_m"], track["y_m"], s=9, marker="x", color=COLOURS[0], linewidths=0.9, zorder=4)
     _legend(
-        axes,
+        figure,
         [
             Line2D([], [], color=TRUTH, marker="o", markersize=4, linewidth=0, label="targets"),
             Line2D([], [], color=COLOURS[0], marker="x", markersize=4, linewidth=1.0, label="estimates, their errors"),
@@ -175,7 +179,7 @@ def heads_picture(output: Output) -> Picture | None:
         return None
     true, told = where(true, true["run"] == run), where(told, told["run"] == run)
     taken = numbers(told)
-    figure, axes = pyplot.subplots(figsize=(6.2, 5.6))
+    figure, axes = pyplot.subplots(figsize=(WIDTH, WIDTH), layout="constrained")
     _ground(axes, output)
     _draw_truth(axes, true, grey=True)
     handed = chosen = 0
@@ -196,7 +200,7 @@ def heads_picture(output: Output) -> Picture | None:
         axes.scatter(*heads[~as_told].T, facecolors="white", edgecolors=shade, **mark)
     _close(axes, true)
     _legend(
-        axes,
+        figure,
         [
             Line2D([], [], color="#c3c9d1", linewidth=5, label="true path"),
             Line2D([], [], color=QUIET, marker="D", markersize=5, linewidth=1.0, label="head, as chosen before"),
@@ -243,6 +247,42 @@ def modes_picture(output: Output) -> Picture | None:
         svg_text(figure),
         f"Run {run}: how each target was followed under its identifier, and when it was located (ticks). A group goes on under the "
         "lowest identifier of its targets.",
+    )
+
+
+def error_picture(output: Output) -> Picture | None:
+    """Of all runs, whose estimates come at any time."""
+    error = errors(output.track)
+    known = np.flatnonzero(np.isfinite(error))
+    if not len(known):
+        return None
+    time, number = output.track["time_s"][known], output.track["number"][known]
+    error = np.maximum(error[known], 1e-2)
+    figure, axes = pyplot.subplots(figsize=(6.4, 3.8), layout="constrained")
+    shown = []
+    few = slice(None, None, max(1, len(known) // POINTS))
+    for target in [*np.unique(number[np.isfinite(number)]), np.nan]:
+        mine = number[few] == target if np.isfinite(target) else ~np.isfinite(number[few])
+        if mine.any():
+            look = {"color": colour(target), "marker": "o", "markersize": 3, "linewidth": 0}
+            axes.plot(time[few][mine], error[few][mine], alpha=0.6, markeredgewidth=0, **look)
+            shown.append(Line2D([], [], label=f"target {target:.0f}" if np.isfinite(target) else "group", **look))
+    shown = shown if len(shown) <= len(COLOURS) else []
+    edges = np.linspace(time.min(), time.max() + 1e-9, BINS + 1)
+    groups = [error[(time >= low) & (time < high)] for low, high in zip(edges, edges[1:])]
+    middle = [(float(low + high) / 2.0, float(np.median(g))) for low, high, g in zip(edges, edges[1:], groups) if len(g)]
+    axes.plot(*zip(*middle), color=TRUTH, linewidth=1.6)
+    shown.append(Line2D([], [], color=TRUTH, linewidth=1.6, label="median"))
+    plain_log(axes, "y")
+    axes.set_xlabel("time, s")
+    axes.set_ylabel("error, m")
+    _legend(figure, shown)
+    runs = len(output.runs["run"])
+    return Picture(
+        "Error against time",
+        svg_text(figure),
+        f"Distance of the estimates of {runs} run{'s' if runs > 1 else ''} from the target that they are compared with at the same "
+        "instant (groups: from the middle of their targets), on a logarithmic scale.",
     )
 
 
