@@ -355,7 +355,7 @@ struct observer bus_observer(struct bus *bus)
         .sink = on_sink,
         .local = on_local,
         .cluster = heard || bus->searches ? on_cluster : NULL,
-        .watch = heard ? on_watch : NULL,
+        .watch = on_watch,
         .frame = heard ? on_frame : NULL,
         .mote = heard ? on_mote : NULL,
     };

@@ -113,6 +113,19 @@ def test_page_of_several_targets(tmp_path: Path) -> None:
     assert "18 of 24 hand-overs" in titles["Heads"]  # not after 6 s, when there is no prince, nor when they meet and part
 
 
+def test_page_of_a_target_that_is_heard(tmp_path: Path) -> None:
+    told = [str(program()), "run", "han_straight", "--set", "source.points=150,150; 350,350", "--out", str(tmp_path / "out")]
+    subprocess.run(told, capture_output=True, check=True)
+    titles = titles_of(tmp_path / "out")
+    assert {"Targets", "Heads", "Error against time"} < {*titles} and "Modes" not in titles
+    found = output.read(tmp_path / "out")
+    assert isinstance(found, Output)
+    (fate,) = target_figures.fates(found)
+    assert (fate.runs, fate.found) == (1, 1) and fate.estimates == len(found.track["run"]) > 2
+    known = target_figures.errors(found.track)
+    assert fate.error_m == pytest.approx(float(known.mean()), abs=0.01)  # by truth.csv as by the truth beside each estimate
+
+
 def test_fates_of_several_targets(tmp_path: Path) -> None:
     found = output.read(write_targets(tmp_path / "out"))
     assert isinstance(found, Output)
