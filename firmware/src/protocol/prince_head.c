@@ -238,13 +238,19 @@ static void say_succeed(struct mh_prince *p, const struct mh_prince_row *row)
 void mh_prince_lead(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate)
 {
     p->counters.located++;
+    row->generation++;
+    row->state = MH_PRINCE_HEAD;
+    say_succeed(p, row);
+    mh_prince_regroup(p, row, estimate);
+}
+
+void mh_prince_go_ahead(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate)
+{
     mh_prince_calm(row);
     take_fix(row, estimate);
     drop_unfixed(p);
-    row->generation++;
     row->state = MH_PRINCE_HEAD;
     row->is_prince = row->is_passive = false;
-    say_succeed(p, row);
     row->head = p->node->id;
     name_prince(p, row);
     set_dog(p, row);
@@ -252,7 +258,6 @@ void mh_prince_lead(struct mh_prince *p, struct mh_prince_row *row, const struct
     struct mh_estimate told = *estimate;
     told.target = row->target;
     p->node->port->tell(p->node->context, &told);
-    mh_prince_regroup(p, row, estimate);
 }
 
 /* ---- what others hear ---- */

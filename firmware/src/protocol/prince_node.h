@@ -112,6 +112,9 @@ void mh_prince_collect(struct mh_prince *p, const struct mh_prince_row *row, mh_
 /* Forget the row's answers. */
 void mh_prince_discard(struct mh_prince *p, const struct mh_prince_row *row);
 
+/* The row has the whole saved track. */
+bool mh_prince_has_track(const struct mh_prince_row *row);
+
 /* How many answers of others there are. */
 uint8_t mh_prince_collected(const struct mh_prince *p, const struct mh_prince_row *row);
 
@@ -125,6 +128,9 @@ void mh_prince_close(struct mh_prince *p, struct mh_prince_row *row);
 
 /* `estimate`, and the track as saved in row->bytes, begin the next generation, with this node as head. */
 void mh_prince_lead(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate);
+
+/* Be head of the row's target, which the estimate is of: say so, and name the next. */
+void mh_prince_go_ahead(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate);
 
 /* Say what the row knows of the target, as its head. */
 void mh_prince_announce(struct mh_prince *p, struct mh_prince_row *row);
@@ -148,7 +154,8 @@ void mh_prince_hear_succeed(struct mh_prince *p, const mh_succeed_t *succeed);
 
 /* ---- prince_group.c ---- */
 
-/* The estimate of a new head says that its target is to go on with another as a group, or that it is a group no more. */
+/* A new head's estimate -> this node goes ahead (mh_prince_go_ahead) with the row, and where the estimate says so, with the group that its target and another become, or with each part of a group
+ * that is one no more. */
 void mh_prince_regroup(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate);
 
 /* A new target was found where this head's may be: it is this head's, and is said so. Returns false if there is no such. */

@@ -65,7 +65,7 @@ uint8_t mh_prince_collected(const struct mh_prince *p, const struct mh_prince_ro
     return others;
 }
 
-static bool has_track(const struct mh_prince_row *row)
+bool mh_prince_has_track(const struct mh_prince_row *row)
 {
     return row->state != MH_PRINCE_FREE && row->length > 0 && row->gathered == row->length;
 }
@@ -74,10 +74,11 @@ bool mh_prince_localise(struct mh_prince *p, struct mh_prince_row *row)
 {
     const uint8_t number = mh_prince_number(p, row);
     const uint8_t begin = first_of(p, number), end = first_of(p, (uint8_t)(number + 1));
-    struct mh_saved_track own = {row->target, row->bytes, has_track(row) ? row->length : 0}, others[MH_TARGETS_MAX];
+    struct mh_saved_track own = {row->target, row->bytes, mh_prince_has_track(row) ? row->length : 0},
+                          others[MH_TARGETS_MAX];
     size_t count = 0;
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
-        if (i != number && has_track(&p->rows[i])) {
+        if (i != number && mh_prince_has_track(&p->rows[i])) {
             const struct mh_saved_track other = {p->rows[i].target, p->rows[i].bytes, p->rows[i].length};
             others[count++] = other;
         }
@@ -123,11 +124,11 @@ static mh_tick window_of(const struct mh_prince *p, const struct mh_prince_row *
     return row->members > 1 ? 2 * p->config->window : p->config->window;
 }
 
-/* The founder's number and a count of 1 to 15: never 0. */
+/* The founder's number and a count from 1: never 0, and followed by as many as a group that is found as such takes, to 15. */
 void mh_prince_name(struct mh_prince *p, struct mh_prince_row *row)
 {
     if (row->target == 0) {
-        p->founded = (uint8_t)(p->founded % 15 + 1);
+        p->founded = (uint8_t)(p->founded % (16 - MH_GROUP_MAX) + 1);
         p->counters.founded++;
         row->target = p->node->id * 16 + p->founded;
     }

@@ -20,6 +20,10 @@ static struct {
     mh_real energy; /* that the node hears */
     enum mh_status status;
     struct mh_estimate estimate, told_of;
+    enum mh_status join_status;
+    unsigned joined;
+    uint32_t expected_of;
+    uint8_t expected_byte;
     size_t length;
 } saw;
 
@@ -99,10 +103,13 @@ static enum mh_status expect(void *context, const struct mh_saved_track *track, 
                              struct mh_estimate *estimate)
 {
     (void)context;
-    (void)track;
-    (void)time;
-    (void)estimate;
-    return MH_NONE;
+    saw.expected_of = track->target;
+    saw.expected_byte = track->bytes[0];
+    *estimate = saw.estimate;
+    estimate->flags = 0;
+    estimate->time = time;
+    estimate->members = track->length == 80 ? 2 : 1;
+    return MH_OK;
 }
 
 static enum mh_status join(void *context, const struct mh_saved_track *track, const struct mh_saved_track *other,
@@ -113,15 +120,16 @@ static enum mh_status join(void *context, const struct mh_saved_track *track, co
     (void)other;
     memset(bytes, 9, 80);
     *length = 80;
-    return MH_OK;
+    saw.joined++;
+    return saw.join_status;
 }
 
 static enum mh_status part(void *context, uint8_t number, uint32_t *target, uint8_t *bytes, size_t *length)
 {
     (void)context;
-    (void)bytes;
     *target = TARGET + number;
     *length = 40;
+    memset(bytes, number, 40);
     return number < 2 ? MH_OK : MH_NONE;
 }
 
@@ -1031,6 +1039,148 @@ static void a_row_is_small(void)
     TEST_ASSERT_TRUE(sizeof(struct mh_prince_row) <= 340);
 }
 
+/* ---- groups ---- */
+
+static void needs_two_rows(void)
+{
+    if (MH_TARGETS_MAX < 2) {
+        TEST_IGNORE_MESSAGE("the table has one row");
+    }
+}
+
+/* Another target, TARGET + by, that HEAD leads. */
+static void know_another(uint32_t by)
+{
+    struct mh_message another = awake(9, HEAD, OTHER);
+    another.as.awake.target = (int32_t)(TARGET + by);
+    another.as.awake.x_mm = 10000;
+    hear(&another);
+    TEST_ASSERT_NOT_NULL(row_of(TARGET + by));
+}
+
+static void a_head_takes_in_another_target(void)
+{
+    needs_two_rows();
+    saw.estimate.flags = MH_ESTIMATE_MERGE;
+    saw.estimate.near = TARGET + 4;
+    ask_as_prince();
+    know_another(4);
+    answer();
+    run_until(saw.time + 300);
+    TEST_ASSERT_EQUAL(1, saw.joined);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_MERGE]);
+    TEST_ASSERT_EQUAL_INT32(TARGET, saw.last[MH_MESSAGE_MERGE].as.merge.target);
+    TEST_ASSERT_EQUAL_INT32(TARGET + 4, saw.last[MH_MESSAGE_MERGE].as.merge.other);
+    TEST_ASSERT_EQUAL(0, saw.last[MH_MESSAGE_MERGE].as.merge.answers);
+    TEST_ASSERT_NULL(row_of(TARGET + 4));
+    TEST_ASSERT_EQUAL_INT32(TARGET, saw.last[MH_MESSAGE_AWAKE].as.awake.target);
+    TEST_ASSERT_EQUAL(10, saw.last[MH_MESSAGE_AWAKE].as.awake.generation); /* newer than both, which were 5 and 9 */
+    TEST_ASSERT_EQUAL(2, saw.last[MH_MESSAGE_AWAKE].as.awake.members);
+    TEST_ASSERT_EQUAL(80, saw.last[MH_MESSAGE_AWAKE].as.awake.length);
+    TEST_ASSERT_EQUAL(1, saw.told);
+    TEST_ASSERT_EQUAL(2, saw.told_of.members);
+    TEST_ASSERT_EQUAL(1, state.counters.merged);
+    TEST_ASSERT_EQUAL(1, state.counters.located);
+}
+
+/* The group has the lower identifier, and its own is the one that is no more. */
+static void a_head_goes_on_under_the_lower_identifier(void)
+{
+    needs_two_rows();
+    saw.estimate.flags = MH_ESTIMATE_MERGE;
+    saw.estimate.near = TARGET - 4;
+    ask_as_prince();
+    know_another((uint32_t)-4);
+    answer();
+    run_until(saw.time + 300);
+    TEST_ASSERT_NULL(row_of(TARGET));
+    TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET - 4));
+    TEST_ASSERT_EQUAL_INT32(TARGET, saw.last[MH_MESSAGE_SUCCEED].as.succeed.target); /* to the old head */
+    TEST_ASSERT_EQUAL_INT32(TARGET, saw.last[MH_MESSAGE_MERGE].as.merge.other);
+    TEST_ASSERT_EQUAL_INT32(TARGET - 4, saw.last[MH_MESSAGE_AWAKE].as.awake.target);
+    TEST_ASSERT_EQUAL(10, saw.last[MH_MESSAGE_AWAKE].as.awake.generation);
+}
+
+/* It is in the group already: its head has not heard so. */
+static void who_has_not_heard_of_the_merge_is_told_again(void)
+{
+    needs_two_rows();
+    saw.estimate.flags = MH_ESTIMATE_MERGE;
+    saw.estimate.near = TARGET + 4;
+    saw.join_status = MH_ERR_CORRUPT;
+    ask_as_prince();
+    know_another(4);
+    answer();
+    run_until(saw.time + 300);
+    TEST_ASSERT_EQUAL_INT32(TARGET + 4, saw.last[MH_MESSAGE_MERGE].as.merge.other);
+    TEST_ASSERT_NULL(row_of(TARGET + 4));
+    TEST_ASSERT_EQUAL(0, state.counters.merged);
+    TEST_ASSERT_EQUAL(6, saw.last[MH_MESSAGE_AWAKE].as.awake.generation);
+}
+
+/* A tracker that says so of a target unknown, or that cannot join them. */
+static void a_merge_that_cannot_be(void)
+{
+    saw.estimate.flags = MH_ESTIMATE_MERGE;
+    saw.estimate.near = TARGET + 4;
+    become_head();
+    TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_MERGE]);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_AWAKE]);
+}
+
+static struct mh_message merge(uint32_t target, uint32_t other, uint8_t answers)
+{
+    const struct mh_message message = {.kind = MH_MESSAGE_MERGE,
+                                       .as.merge = {.sender = (int32_t)OTHER,
+                                                    .target = (int32_t)target,
+                                                    .other = (int32_t)other,
+                                                    .generation = 4,
+                                                    .answers = answers}};
+    return message;
+}
+
+static void the_head_of_a_target_that_is_taken_in_says_so(void)
+{
+    become_head();
+    tell_the(merge(TARGET - 2, TARGET, 0));
+    TEST_ASSERT_NULL(row_of(TARGET));
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_MERGE]);
+    TEST_ASSERT_EQUAL(1, saw.last[MH_MESSAGE_MERGE].as.merge.answers);
+    TEST_ASSERT_EQUAL_INT32(TARGET - 2, saw.last[MH_MESSAGE_MERGE].as.merge.target);
+    TEST_ASSERT_EQUAL_INT32(TARGET, saw.last[MH_MESSAGE_MERGE].as.merge.other);
+}
+
+static void others_forget_a_target_that_is_taken_in(void)
+{
+    tell_the(awake(5, HEAD, OTHER));
+    tell_the(merge(TARGET, TARGET, 0)); /* absurd */
+    TEST_ASSERT_NOT_NULL(row_of(TARGET));
+    tell_the(merge(TARGET - 2, TARGET, 1));
+    TEST_ASSERT_NULL(row_of(TARGET));
+    TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_MERGE]);
+}
+
+/* Two parts: the row goes on with the one that has its identifier, the other has a row of its own; both get a prince. */
+static void a_group_falls_apart(void)
+{
+    needs_two_rows();
+    saw.estimate.flags = MH_ESTIMATE_SPLIT;
+    become_head();
+    TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET));
+    TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET + 1));
+    TEST_ASSERT_EQUAL(0, row_of(TARGET)->bytes[0]);
+    TEST_ASSERT_EQUAL(1, row_of(TARGET + 1)->bytes[0]);
+    TEST_ASSERT_EQUAL(40, row_of(TARGET + 1)->length);
+    TEST_ASSERT_EQUAL(2, saw.of_kind[MH_MESSAGE_AWAKE]);
+    TEST_ASSERT_EQUAL_INT32(TARGET + 1, saw.last[MH_MESSAGE_AWAKE].as.awake.target);
+    TEST_ASSERT_EQUAL(6, saw.last[MH_MESSAGE_AWAKE].as.awake.generation);
+    TEST_ASSERT_EQUAL(0, saw.last[MH_MESSAGE_AWAKE].as.awake.speeds[0]);
+    TEST_ASSERT_EQUAL(2, saw.told);
+    TEST_ASSERT_EQUAL_UINT32(TARGET + 1, saw.expected_of);
+    TEST_ASSERT_EQUAL(0, saw.told_of.flags & MH_ESTIMATE_SPLIT);
+    TEST_ASSERT_EQUAL(1, state.counters.split);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -1087,6 +1237,13 @@ int main(void)
     RUN_TEST(radios_without_watching_rows_sleep_but_in_windows);
     RUN_TEST(configurations_are_checked);
     RUN_TEST(a_row_is_small);
+    RUN_TEST(a_head_takes_in_another_target);
+    RUN_TEST(a_head_goes_on_under_the_lower_identifier);
+    RUN_TEST(who_has_not_heard_of_the_merge_is_told_again);
+    RUN_TEST(a_merge_that_cannot_be);
+    RUN_TEST(the_head_of_a_target_that_is_taken_in_says_so);
+    RUN_TEST(others_forget_a_target_that_is_taken_in);
+    RUN_TEST(a_group_falls_apart);
     port_exit(UNITY_END() > 0);
     return 0;
 }
