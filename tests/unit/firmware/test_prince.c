@@ -1031,22 +1031,7 @@ static void configurations_are_checked(void)
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, prince->init(&state, &bad, &node));
 }
 
-static void a_row_is_small(void)
-{
-#ifdef __AVR__
-    TEST_ASSERT_TRUE(sizeof(struct mh_prince_row) <= 300);
-#endif
-    TEST_ASSERT_TRUE(sizeof(struct mh_prince_row) <= 340);
-}
-
 /* ---- groups ---- */
-
-static void needs_two_rows(void)
-{
-    if (MH_TARGETS_MAX < 2) {
-        TEST_IGNORE_MESSAGE("the table has one row");
-    }
-}
 
 /* Another target, TARGET + by, that HEAD leads. */
 static void know_another(uint32_t by)
@@ -1060,7 +1045,6 @@ static void know_another(uint32_t by)
 
 static void a_head_takes_in_another_target(void)
 {
-    needs_two_rows();
     saw.estimate.flags = MH_ESTIMATE_MERGE;
     saw.estimate.near = TARGET + 4;
     ask_as_prince();
@@ -1086,7 +1070,6 @@ static void a_head_takes_in_another_target(void)
 /* The group has the lower identifier, and its own is the one that is no more. */
 static void a_head_goes_on_under_the_lower_identifier(void)
 {
-    needs_two_rows();
     saw.estimate.flags = MH_ESTIMATE_MERGE;
     saw.estimate.near = TARGET - 4;
     ask_as_prince();
@@ -1104,7 +1087,6 @@ static void a_head_goes_on_under_the_lower_identifier(void)
 /* It is in the group already: its head has not heard so. */
 static void who_has_not_heard_of_the_merge_is_told_again(void)
 {
-    needs_two_rows();
     saw.estimate.flags = MH_ESTIMATE_MERGE;
     saw.estimate.near = TARGET + 4;
     saw.join_status = MH_ERR_CORRUPT;
@@ -1163,7 +1145,6 @@ static void others_forget_a_target_that_is_taken_in(void)
 /* Two parts: the row goes on with the one that has its identifier, the other has a row of its own; both get a prince. */
 static void a_group_falls_apart(void)
 {
-    needs_two_rows();
     saw.estimate.flags = MH_ESTIMATE_SPLIT;
     become_head();
     TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET));
@@ -1236,7 +1217,6 @@ int main(void)
     RUN_TEST(what_is_of_no_time_about_now_is_refused);
     RUN_TEST(radios_without_watching_rows_sleep_but_in_windows);
     RUN_TEST(configurations_are_checked);
-    RUN_TEST(a_row_is_small);
     RUN_TEST(a_head_takes_in_another_target);
     RUN_TEST(a_head_goes_on_under_the_lower_identifier);
     RUN_TEST(who_has_not_heard_of_the_merge_is_told_again);
