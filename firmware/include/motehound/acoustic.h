@@ -1,38 +1,45 @@
 /* The trackers of targets that are heard: `acoustic`, `dm` and `ml`. One instance follows one target, or one group of targets (group.h); several side by side follow
- * several, each told of the others (among()).
+ * several, each told of the others (among()). The measurements are energies in units of the detection threshold (sound.h); those below 1 are left out.
  *
- * - `acoustic`, the default: the median of triples of the strongest nodes, refined by Gauss-Newton on all that are near (mh_sound_fix); with others near, the joint
- *   solution for all of them (joint_sources.h).
- * - `dm`: distance measurement with the three strongest, from a table of a few intervals (Han 2.1).
+ * - `acoustic`, the default: the median of triples of the strongest nodes, refined by Gauss-Newton (mh_sound_fix).
+ * - `dm`: distance measurement with the three strongest, by a table of a few intervals (Han 2.1); where more are wanted (`strongest`) the median of triples.
  * - `ml`: maximum likelihood on a grid, all energies equally certain (Han, Eqs. (2-3), (2-4)). A baseline.
  *
- * Measurements are energies in units of the detection threshold (sound.h); those below 1 are left out, and when there is a track those of nodes farther than
- * reach_m from where it is expected, and from where the others are that it is fitted with. The strongest MH_ACOUSTIC_HEARD_MAX have room.
+ * A step, for a sensing range R:
+ * 1. Who is near: tracks with less than 3.5 R between them, centroids less extents, and who is near to those. `mode` is SPARSE from a gap of 2.5 R on until there are 3 R.
+ * 2. What is of use. Nobody is near: what is heard within reach_m + R / 2 of the loudest node, for a target that has turned is not where it is expected; but nothing that is nearer to another
+ *    track. Else what is heard within reach_m of where it is expected, or with JOINT of where one of them is; with DECOMPOSITION times the own share, where that leaves
+ *    0.6. Without a track: where separation is not NONE, what the others do not explain of energies that are more than one and a half times as large as they do.
+ *    The MH_ACOUSTIC_HEARD_MAX strongest have room.
+ * 3. A fix. With JOINT and somebody near, or of a group, joint_sources.h with the predictions of all as priors, none taken for surer than 1.5 m; MH_SOURCES_MAX at most, the nearest.
+ *    Else by the tracker's own method from at least two nodes.
+ * 4. Mirror check, unless JOINT. Farther than 25 m from where it was expected: of the crossings of the circle pairs of the three strongest the one nearest to that, if
+ *    it at least halves the distance and meets every circle within a quarter of its radius and 3 m. And `acoustic` outside the gate (5.): Gauss-Newton from where it was expected instead, if that
+ *    explains energies and prediction better. Either is MH_ESTIMATE_MIRRORED.
+ * 5. The filter: of Kalman, constant velocity with white acceleration, the fix with its Fisher information's covariance and 0.25 m2. A fix that is farther off than a chi-square of
+ *    25 is a turn: the track goes on from it with the velocity between it and the last; but with somebody near the first two of them are left out. Where `filtered` is false it goes on
+ *    so from every fix.
  *
- * A step: (1) with others within 120 m (`mode` SPARSE: from a gap of 100 m on until one of 120 m, distances of centroids less extents), their energies are told apart as
- * `separation` says; (2) a fix, from at least two nodes; (3) farther than 25 m from the prediction it may be a mirror image: the crossings of the circle pairs of the three strongest are
- * tried, and the one nearest to the prediction is taken (MH_ESTIMATE_MIRRORED) if it halves the distance and meets each circle within a quarter of the distance and 3 m
- * (not `acoustic` fitted jointly); (4) the filter takes it: a Kalman filter of constant velocity (q = acceleration_psd), or where `filtered` is false the fix itself
- * with the velocity between the last two. A fix outside the chi-square gate of 25 begins the track again there if nobody is near, with the velocity from the last fix; else
- * it is left out, GATE_PATIENCE times.
+ * What an estimate holds: `covariance` of position and velocity (4 states); `raw` the fix; velocity at most 30 m/s between fixes, zero where it is unknown: at the first, and below 1 m/s;
+ * `measurements` those used; `flags` STARTED, COASTED, REFRESHED with every fix, MIRRORED; MERGE (with `near`) and SPLIT of groups; and UNRESOLVED
+ * once the target may have exchanged its identifier with another: if they were expected, or found, nearer to each other than 10 m or two and a half standard deviations of their distance, at an instant
+ * or between two. It stays so: two that meet and part again sound the same whether they crossed or turned back, and nothing that comes later tells. `target`, `members`, `of`, `extent` and `mode` as estimate.h
+ * says. After coast_s without a fix the track ends: MH_NONE, and the next step begins anew.
  *
- * What an estimate holds: `covariance` of position (4 states); `raw` the fix; velocity at most 30 m/s, zero where it is unknown: at the first fix, and below 1 m/s; `measurements` those used; `flags` STARTED, COASTED,
- * REFRESHED with every fix, MIRRORED, of groups MERGE (with `near`) and SPLIT, and
- * UNRESOLVED once two targets have been so near to each other that they may have exchanged their identifiers: from then on, for sound has no memory of who is who. `target`, `members`, `of`,
- * `extent` and `mode` as estimate.h says. A track without a fix for coast_s ends: step() gives MH_NONE, and the next one begins anew.
+ * A saved track (numbers as bytes.h puts them): 5 << 5, 16 if there have been two fixes, 4 x fixes left out, mode (1); time of the last fix (4); place in mm (4 + 4); velocity in 1/256 m/s (2 + 2); the
+ * covariance's factors U and D (kalman.h), the upper halves of the numbers (10 x 2); the last three speeds in 1/4 m/s (3); the group (group.h). Of a single target 42 bytes, 46 while it draws near
+ * to another; MH_ACOUSTIC_SAVED_MAX at most.
  *
  * Groups (config.group; group.h), `acoustic` only: a track that begins, with nobody near, where one source explains the energies badly begins as a group of as many as source_count.h finds, up to
  * MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
  * part decides.
  *
- * A saved track (numbers as bytes.h puts them): kind and mode (1), the time (4), place in mm (4 + 4), velocity (2 + 2, in 1/256 m/s), the covariance's factors (10 x 2), the last three speeds (3), then the
- * group (group.h): 42 bytes for a single target, MH_ACOUSTIC_SAVED_MAX at most. The filter works with what was saved: a step of the instance that saved and of one that loaded are the same.
- *
- * Cost: docs/costs.md. */
+ * among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. Cost: docs/costs.md. */
 #ifndef MOTEHOUND_ACOUSTIC_H
 #define MOTEHOUND_ACOUSTIC_H
 
 #include "motehound/circles.h"
+#include "motehound/distance_table.h"
 #include "motehound/group.h"
 #include "motehound/kalman.h"
 #include "motehound/sound.h"
@@ -70,13 +77,14 @@ struct mh_acoustic_config {
     mh_real sensing_range_m;         /* R, 1 to 1e4, nominal 40 */
     mh_real reach_m;                 /* from how far a measurement is used, 1 to 1e5, nominal R + 15 */
     enum mh_circles_variant variant; /* of `dm`, nominal UNIFORM */
-    uint8_t intervals;               /* of the table of `dm`, 0: undivided; nominal 8 */
-    uint8_t strongest;               /* nodes that a fix is made from, the strongest: 2 to 255, nominal 255: all */
-    enum mh_separation separation;   /* nominal JOINT; of `dm` and `ml` it must be another */
-    mh_real share_range_m;           /* DECOMPOSITION: of mh_sound_share, 1 to 1e5, nominal 3 R; as published R */
-    bool filtered;                   /* nominal true */
-    bool mirror_check;               /* nominal true */
-    mh_real acceleration_psd;        /* q, (m/s2)^2 s, 1e-6 to 1e6, nominal 0.5 */
+    uint8_t intervals;               /* of the table of `dm`, 0: undivided; nominal 8, ... */
+    enum mh_distance_mode distances; /* ... and what it says of each; nominal MIDDLE */
+    uint8_t strongest; /* so many nodes make a fix, the strongest: 2 to 255; nominal 0: all, of `dm` three */
+    enum mh_separation separation; /* nominal JOINT; of `dm` and `ml` it must be another */
+    mh_real share_range_m;         /* DECOMPOSITION: of mh_sound_share, 1 to 1e5, nominal 3 R; as published R */
+    bool filtered;                 /* nominal true */
+    bool mirror_check;             /* nominal true */
+    mh_real acceleration_psd;      /* q, (m/s2)^2 s, 1e-6 to 1e6, nominal 0.5 */
     mh_real
         speed_mps; /* what a target's velocity may be in each axis when nothing is known of it, 0.1 to 1e3, nominal 10 */
     mh_real

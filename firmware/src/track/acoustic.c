@@ -14,6 +14,7 @@ void mh_acoustic_config_default(struct mh_acoustic_config *config, mh_real sensi
         .reach_m = sensing_range_m + 15.0f,
         .variant = MH_CIRCLES_UNIFORM,
         .intervals = 8,
+        .distances = MH_DISTANCE_MIDDLE,
         .separation = MH_SEPARATION_JOINT,
         .share_range_m = 3.0f * sensing_range_m,
         .filtered = true,
@@ -31,10 +32,11 @@ static bool valid(const struct mh_acoustic_config *config)
 {
     return mh_sound_valid(&config->sound) && (config->sound.source_sd > 0 || config->sound.background_sd > 0) &&
            mh_within(config->sensing_range_m, 1.0f, 1e4f) && mh_within(config->reach_m, 1.0f, 1e5f) &&
-           config->variant <= MH_CIRCLES_JOINT && config->strongest != 1 && config->separation <= MH_SEPARATION_JOINT &&
-           mh_within(config->share_range_m, 1.0f, 1e5f) && mh_within(config->acceleration_psd, 1e-6f, 1e6f) &&
-           mh_within(config->speed_mps, 0.1f, 1e3f) && mh_within(config->fix_sd_m, 0.1f, 1e3f) &&
-           mh_within(config->coast_s, 0.1f, 3600.0f) && mh_group_config_check(&config->group) == MH_OK;
+           config->variant <= MH_CIRCLES_JOINT && config->distances <= MH_DISTANCE_LINEAR && config->strongest != 1 &&
+           config->separation <= MH_SEPARATION_JOINT && mh_within(config->share_range_m, 1.0f, 1e5f) &&
+           mh_within(config->acceleration_psd, 1e-6f, 1e6f) && mh_within(config->speed_mps, 0.1f, 1e3f) &&
+           mh_within(config->fix_sd_m, 0.1f, 1e3f) && mh_within(config->coast_s, 0.1f, 3600.0f) &&
+           mh_group_config_check(&config->group) == MH_OK;
 }
 
 static enum mh_status begin(void *state, const struct mh_acoustic_kind *kind, const void *given, mh_tick interval)
@@ -222,17 +224,24 @@ static enum mh_status locate(const struct mh_acoustic *acoustic, struct mh_acous
     return status;
 }
 
-/* The fix into the track -> scene->own, as it is then. */
-static enum mh_status follow(const struct mh_acoustic *acoustic, mh_tick time, const struct mh_acoustic_fix *fix,
+/* The fix into the track -> scene->own, as it is then. MH_NONE: it is left out, and counted. */
+static enum mh_status follow(struct mh_acoustic *acoustic, mh_tick time, const struct mh_acoustic_fix *fix,
                              struct mh_acoustic_scene *scene)
 {
-    const struct mh_acoustic_track *last = &acoustic->track;
+    struct mh_acoustic_track *last = &acoustic->track;
     if (!acoustic->tracking) {
         scene->own.updated = time;
         return set_first(&acoustic->config, fix, &scene->own);
     }
+    const struct mh_acoustic_track expected = scene->own;
     const mh_real seconds = mh_seconds_between(last->updated, time);
-    return take_fix(&acoustic->config, scene, mh_acoustic_position(last), seconds, fix, &scene->own);
+    const enum mh_status status =
+        take_fix(&acoustic->config, scene, mh_acoustic_position(last), seconds, fix, &scene->own);
+    if (status != MH_OK) {
+        scene->own = expected;
+        last->refused = (uint8_t)(last->refused + (last->refused < GATE_PATIENCE));
+    }
+    return status;
 }
 
 /* The one of the others, as a bit, with which it is about to become a group, where velocities before and after tell them apart. */
@@ -284,18 +293,11 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         status = follow(acoustic, time, &fix, &scene);
     }
     if (status != MH_OK) {
-        /* without a fix, or with one that is left out, what is kept of the track stays as it was */
         if (!tracking) {
             return MH_NONE;
         }
         track->mode = scene.own.mode;
-        if (status == MH_NONE && fix.covariance.xx > 0) {
-            track->refused++;
-        }
-        if (mh_acoustic_advance(&scene.own, acoustic->config.acceleration_psd, time) != MH_OK) {
-            return MH_NONE;
-        }
-        answer(&scene.own, time, estimate);
+        answer(&scene.own, time, estimate); /* what is kept of the track is as it was after its last fix */
         estimate->flags |= MH_ESTIMATE_COASTED;
         return MH_OK;
     }

@@ -59,7 +59,7 @@ static void state_nominal(const struct mh_acoustic_config *config, struct mh_aco
 static enum mh_status locate_dm(const struct mh_acoustic_config *config, const struct mh_heard *heard, size_t count,
                                 struct mh_acoustic_fix *fix)
 {
-    const struct mh_distance_table table = {config->sensing_range_m, config->intervals, MH_DISTANCE_MIDDLE};
+    const struct mh_distance_table table = {config->sensing_range_m, config->intervals, (uint8_t)config->distances};
     const size_t used = strongest(config, count, DM_STRONGEST);
     state_nominal(config, fix);
     return used <= DM_STRONGEST ? mh_distance_fix(heard, used, &table, config->variant, &fix->position)

@@ -5,7 +5,7 @@ enum { MOTION = 4 }; /* states x, y, vx, vy */
 
 #define VELOCITY_UNIT (1.0f / 256.0f)
 #define VELOCITY_MOST 127.0f
-#define LEAST_VARIANCE 1e-6f
+#define LEAST_VARIANCE 1e-12f
 #define MOST_VARIANCE 1e12f
 
 /* The first byte: mode, refused, moving */
