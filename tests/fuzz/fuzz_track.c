@@ -1,9 +1,10 @@
 /* Tracks that are handed over: load() on any bytes.
  *
  * The first byte chooses the tracker, the second the length of the track that follows, if it can be handed over; then come instants, each with its distance in time and its
- * measurements. Whatever is loaded: a refusal leaves no track, estimates are finite numbers with covariances that are one, and
- * what is saved again is taken again. */
+ * measurements, and of trackers that know others, now and then the track of one, which may be joined: one that was saved before, with some bytes changed. Whatever is loaded: a refusal leaves
+ * no track, estimates are finite numbers with covariances that are one, and what is saved again is taken again. */
 #include "fuzz.h"
+#include "motehound/acoustic.h"
 #include "motehound/centroid.h"
 #include "motehound/gas.h"
 #include "motehound/gas_wind.h"
@@ -23,6 +24,7 @@ union state {
     struct mh_gas gas;
     struct mh_gas_gaussian gas_gaussian;
     struct mh_gas_wind gas_wind;
+    struct mh_acoustic acoustic;
 };
 
 struct input {
@@ -63,11 +65,37 @@ static mh_tick time_of(const uint8_t *track)
     return (mh_tick)track[0] << 24 | (mh_tick)track[1] << 16 | (mh_tick)track[2] << 8 | track[3];
 }
 
+/* Another track beside this one, or to join it: bytes that were saved before, some of them changed. */
+static void meet(const struct mh_tracker *tracker, void *state, struct input *input, const uint8_t *saved,
+                 size_t length)
+{
+    static uint8_t bytes[MH_TRACK_BYTES_MAX]; /* until the next step */
+    uint8_t part[MH_TRACK_BYTES_MAX];
+    const uint8_t changes = byte(input) % 4, kind = byte(input);
+    uint32_t target;
+    size_t part_length;
+    memcpy(bytes, saved, length);
+    for (uint8_t i = 0; i < changes && length > 0; i++) {
+        const size_t at = byte(input) % length;
+        bytes[at] = byte(input);
+    }
+    const struct mh_saved_track other = {kind % 3u, bytes, length - (kind & 128 && length > 0)};
+    const enum mh_status beside = tracker->among(state, 1, &other, 1);
+    require(beside == MH_OK || beside == MH_ERR_CORRUPT);
+    if (kind & 64 && tracker->join != NULL) {
+        tracker->join(state, &other);
+    }
+    if (tracker->part != NULL && tracker->part(state, kind % 4u, &target, part, &part_length) == MH_OK) {
+        require(part_length <= MH_TRACK_BYTES_MAX);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const struct mh_tracker *const trackers[] = {
-        &mh_tracker_range, &mh_tracker_range,     &mh_tracker_pftl,    &mh_tracker_msl,     &mh_tracker_centroid,
-        &mh_tracker_gas,   &mh_tracker_gas_small, &mh_tracker_gas_ekf, &mh_tracker_gas_ukf, &mh_tracker_gas_wind};
+        &mh_tracker_range,    &mh_tracker_range,     &mh_tracker_pftl,    &mh_tracker_msl,     &mh_tracker_centroid,
+        &mh_tracker_gas,      &mh_tracker_gas_small, &mh_tracker_gas_ekf, &mh_tracker_gas_ukf, &mh_tracker_gas_wind,
+        &mh_tracker_acoustic, &mh_tracker_acoustic,  &mh_tracker_dm,      &mh_tracker_ml};
     static union state state, other;
     struct mh_range_config range;
     struct mh_pftl_config pftl;
@@ -87,7 +115,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     gas_wind.learn = 0;
     range.sensing_range_m = 50;
     range.tolerance_m = 5;
-    const void *const configs[] = {&range, &range, &pftl, &msl, &centroid, &gas, &gas, &gas, &gas, &gas_wind};
+    struct mh_acoustic_config acoustic, groups, plain;
+    mh_acoustic_config_default(&acoustic, 40);
+    groups = plain = acoustic;
+    mh_group_config_default(&groups.group, MH_GROUP_MEMBERS);
+    plain.separation = MH_SEPARATION_DECOMPOSITION;
+    plain.filtered = false;
+    const void *const configs[] = {&range, &range, &pftl,     &msl,      &centroid, &gas,   &gas,
+                                   &gas,   &gas,   &gas_wind, &acoustic, &groups,   &plain, &plain};
     struct input input = {data, size};
     const uint8_t choice = byte(&input);
     const uint8_t which = choice % (sizeof trackers / sizeof trackers[0]);
@@ -109,11 +144,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     require(tracker->init(&state, configs[which], INTERVAL) == MH_OK);
     struct mh_estimate estimate;
     if (tracker->load != NULL && tracker->load(&state, track, length) != MH_OK) {
-        require(tracker->predict(&state, time_of(track), &estimate) == MH_NONE);
+        require(tracker->predict(&state, 0, &estimate) == MH_NONE);
         require(tracker->save != NULL && tracker->save(&state, track, &length) == MH_NONE);
         return 0;
     }
-    mh_tick now = time_of(track);
+    mh_tick now = time_of(tracker->among != NULL ? track + 1 : track);
     if (tracker->predict(&state, now, &estimate) == MH_OK) {
         check(&estimate);
     }
@@ -137,6 +172,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             }
             set[k].value = ((mh_q20)byte(&input) - 20) * MH_Q20_ONE;
         }
+        if (tracker->among != NULL && what & 16) {
+            meet(tracker, &state, &input, track, length);
+        }
         if (tracker->step(&state, now, set, count, &estimate) == MH_OK) {
             check(&estimate);
         }
@@ -146,6 +184,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (tracker->save != NULL && tracker->load != NULL && tracker->save(&state, track, &length) == MH_OK) {
             require(length <= MH_TRACK_BYTES_MAX);
             require(tracker->init(&other, configs[which], INTERVAL) == MH_OK);
+            if (tracker->among != NULL && tracker->predict(&state, now, &estimate) == MH_OK) {
+                require(tracker->among(&other, estimate.target, NULL, 0) == MH_OK);
+            }
             require(tracker->load(&other, track, length) == MH_OK);
             if (what & 32) {
                 state = other;

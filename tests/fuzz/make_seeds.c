@@ -1,5 +1,6 @@
 /* make_seeds WIRE_FOLDER MOTE_FOLDER TRACK_FOLDER FUSION_FOLDER FIXED_FOLDER: good inputs of fuzz_wire.c, fuzz_mote.c, fuzz_track.c, fuzz_fusion.c and fuzz_fixed.c, for the fuzzer
  * to start from. */
+#include "motehound/acoustic.h"
 #include "motehound/centroid.h"
 #include "motehound/fusion.h"
 #include "motehound/gas.h"
@@ -174,6 +175,7 @@ static int save_saved(const char *folder, const char *name, uint8_t choice, cons
         struct mh_gas gas;
         struct mh_gas_gaussian gas_gaussian;
         struct mh_gas_wind gas_wind;
+        struct mh_acoustic acoustic;
     } state;
     uint8_t input[512] = {choice};
     size_t length = 0;
@@ -391,6 +393,12 @@ int main(int argc, char **argv)
     gas_wind.place_count = 1;
     range.sensing_range_m = 50;
     range.height_m = 0;
+    struct mh_acoustic_config acoustic, groups, plain;
+    mh_acoustic_config_default(&acoustic, 40);
+    groups = plain = acoustic;
+    mh_group_config_default(&groups.group, MH_GROUP_MEMBERS);
+    plain.separation = MH_SEPARATION_DECOMPOSITION;
+    plain.filtered = false;
     failed = failed || save_saved(track, "range", 0, &mh_tracker_range, &range) ||
              save_saved(track, "range_errors", 1, &mh_tracker_range, &range) ||
              save_saved(track, "pftl", 2, &mh_tracker_pftl, &pftl) ||
@@ -400,7 +408,10 @@ int main(int argc, char **argv)
              save_saved(track, "gas_small", 6, &mh_tracker_gas_small, &gas) ||
              save_saved(track, "gas_ekf", 7, &mh_tracker_gas_ekf, &gas) ||
              save_saved(track, "gas_ukf", 8, &mh_tracker_gas_ukf, &gas) ||
-             save_saved(track, "gas_wind", 9, &mh_tracker_gas_wind, &gas_wind);
+             save_saved(track, "gas_wind", 9, &mh_tracker_gas_wind, &gas_wind) ||
+             save_saved(track, "acoustic", 10, &mh_tracker_acoustic, &acoustic) ||
+             save_saved(track, "acoustic_groups", 11, &mh_tracker_acoustic, &groups) ||
+             save_saved(track, "dm", 12, &mh_tracker_dm, &plain) || save_saved(track, "ml", 13, &mh_tracker_ml, &plain);
     for (int rule = MH_FUSION_CI; rule < MH_FUSION_CENTRAL; rule++) {
         char name[20];
         snprintf(name, sizeof name, "rule%d", rule);

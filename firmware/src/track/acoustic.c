@@ -264,6 +264,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         return MH_ERR_ARGUMENT;
     }
     if (acoustic->stepped && !mh_tick_before(acoustic->time, time)) {
+        acoustic->others_count = 0;
         return MH_ERR_TIME;
     }
     struct mh_acoustic_scene scene;

@@ -31,15 +31,29 @@ static mh_real gap(const struct mh_group *a, struct mh_vec2 at_a, const struct m
     return distance(at_a, at_b) - mh_group_extent(a) - mh_group_extent(b);
 }
 
+static bool have_a_target_in_common(const struct mh_group *a, const struct mh_group *b)
+{
+    for (uint8_t i = 0; i < a->count; i++) {
+        for (uint8_t j = 0; j < b->count; j++) {
+            if (a->targets[i].target == b->targets[j].target) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* False if it is none to reckon with: from after the instant, or of a target of the own group, which was joined or parted meanwhile. */
 static bool look_at(const struct mh_acoustic *acoustic, mh_tick time, const struct mh_saved_track *saved,
-                    const struct mh_place *origin, struct mh_acoustic_other *other)
+                    const struct mh_acoustic_track *own, struct mh_acoustic_other *other)
 {
     struct mh_acoustic_track track;
     if (mh_acoustic_read(&track, saved->target, saved->bytes, saved->length) != MH_OK ||
+        have_a_target_in_common(&track.group, &own->group) ||
         mh_acoustic_advance(&track, acoustic->config.acceleration_psd, time) != MH_OK) {
         return false;
     }
-    const struct mh_vec2 from = mh_place_relative(&track.origin, origin), on = mh_acoustic_position(&track);
+    const struct mh_vec2 from = mh_place_relative(&track.origin, &own->origin), on = mh_acoustic_position(&track);
     other->target = saved->target;
     other->position.x = from.x + on.x;
     other->position.y = from.y + on.y;
@@ -73,7 +87,7 @@ void mh_acoustic_look_around(const struct mh_acoustic *acoustic, mh_tick time, s
     scene->others_count = 0;
     for (uint8_t i = 0; i < acoustic->others_count; i++) {
         struct mh_acoustic_other *other = &scene->others[scene->others_count];
-        if (look_at(acoustic, time, &acoustic->others[i], &scene->own.origin, other)) {
+        if (look_at(acoustic, time, &acoustic->others[i], &scene->own, other)) {
             least = mh_min(least,
                            gap(&scene->own.group, mh_acoustic_position(&scene->own), &other->group, other->position));
             scene->others_count++;
