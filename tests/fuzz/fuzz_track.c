@@ -80,8 +80,8 @@ static void meet(const struct mh_tracker *tracker, void *state, struct input *in
         bytes[at] = byte(input);
     }
     const struct mh_saved_track other = {kind % 3u, bytes, length - (kind & 128 && length > 0)};
-    const enum mh_status beside = tracker->among(state, 1, &other, 1);
-    require(beside == MH_OK || beside == MH_ERR_CORRUPT);
+    const enum mh_status beside = tracker->among(state, kind & 32 ? 1 : 0, &other, 1);
+    require(beside == MH_OK || beside == MH_ERR_CORRUPT || beside == MH_ERR_ARGUMENT);
     if (kind & 64 && tracker->join != NULL) {
         tracker->join(state, &other);
     }

@@ -34,7 +34,7 @@
  * MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
  * part decides.
  *
- * among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. Cost: docs/costs.md. */
+ * among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. MH_ERR_ARGUMENT: a group is not renamed. Cost: docs/costs.md. */
 #ifndef MOTEHOUND_ACOUSTIC_H
 #define MOTEHOUND_ACOUSTIC_H
 

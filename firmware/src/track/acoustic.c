@@ -298,6 +298,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
             return MH_NONE;
         }
         track->mode = scene.own.mode;
+        track->group.unresolved = track->group.unresolved || (expected & ~merging(&scene)) != 0;
         answer(&scene.own, time, estimate); /* what is kept of the track is as it was after its last fix */
         estimate->flags |= MH_ESTIMATE_COASTED;
         return MH_OK;
@@ -386,6 +387,9 @@ static enum mh_status among(void *state, uint32_t target, const struct mh_saved_
         return MH_ERR_ARGUMENT;
     }
     acoustic->others_count = 0;
+    if (acoustic->tracking && acoustic->track.group.count > 1 && target != acoustic->track.group.targets[0].target) {
+        return MH_ERR_ARGUMENT; /* a group has its lowest identifier */
+    }
     acoustic->track.group.targets[0].target = target;
     for (size_t i = 0; i < count; i++) {
         if (mh_acoustic_read(&track, others[i].target, others[i].bytes, others[i].length) != MH_OK) {
