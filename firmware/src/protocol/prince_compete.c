@@ -28,7 +28,7 @@ void mh_prince_hold_back(struct mh_prince *p, struct mh_prince_row *row)
 
 struct mh_prince_row *mh_prince_contest(struct mh_prince *p, uint32_t target, uint16_t generation, mh_tick time)
 {
-    struct mh_prince_row *row = target == 0 ? mh_prince_find_new(p) : mh_prince_find(p, target);
+    struct mh_prince_row *row = generation == 1 ? mh_prince_find_new(p) : mh_prince_find(p, target);
     if (!row || !mh_prince_is_fresh(p, time)) {
         return NULL;
     }
@@ -91,7 +91,7 @@ void mh_prince_decide(struct mh_prince *p, struct mh_prince_row *row)
 void mh_prince_hear_compete(struct mh_prince *p, const mh_compete_t *compete)
 {
     const struct mh_place place = {compete->x_mm, compete->y_mm, 0};
-    if (compete->target == 0) {
+    if (compete->generation == 1) {
         mh_prince_recognise(p, &place, compete->value_q20);
     }
     struct mh_prince_row *row =

@@ -350,7 +350,13 @@ void mh_prince_hear_fail(struct mh_prince *p, const mh_fail_t *fail)
     if (!mh_prince_is_fresh(p, (mh_tick)fail->time_ms) || fail->target == 0) {
         return;
     }
-    struct mh_prince_row *row = mh_prince_find_or_make(p, (uint32_t)fail->target, true, p->time + FAILED_WATCH);
+    const struct mh_place place = {fail->x_mm, fail->y_mm, 0};
+    if (fail->generation == 0 && mh_prince_is_known(p, &place)) {
+        mh_prince_recognise(p, &place, mh_q20_from_real(1));
+        return;
+    }
+    struct mh_prince_row *row = fail->generation == 0 ? mh_prince_find_new(p) : NULL;
+    row = row ? row : mh_prince_find_or_make(p, (uint32_t)fail->target, true, p->time + FAILED_WATCH);
     if (!row) {
         return;
     }
@@ -363,7 +369,6 @@ void mh_prince_hear_fail(struct mh_prince *p, const mh_fail_t *fail)
         return; /* finds out for itself */
     }
     if (ahead > 0 || !row->fixed) {
-        const struct mh_place place = {fail->x_mm, fail->y_mm, 0};
         row->fixed = fail->generation != 0;
         row->generation = (uint16_t)fail->generation;
         row->head = MH_BROADCAST;

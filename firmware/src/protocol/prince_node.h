@@ -83,6 +83,9 @@ bool mh_prince_is_new(const struct mh_prince *p);
 /* Node at `place` hears something of this energy that it knows no target for: whom this head follows is said again, if that may be it. */
 void mh_prince_recognise(struct mh_prince *p, const struct mh_place *place, mh_q20 value);
 
+/* What is heard at `place` may be a target that has a fix. */
+bool mh_prince_is_known(const struct mh_prince *p, const struct mh_place *place);
+
 /* A tick: the sample is p->value. */
 void mh_prince_watch(struct mh_prince *p);
 

@@ -305,7 +305,9 @@ static uint8_t rank(const struct mh_prince *p, const struct mh_prince_row *row)
 static mh_tick reply_wait(struct mh_prince *p, const struct mh_prince_row *row, mh_real energy)
 {
     const mh_tick window = window_of(p, row);
-    if (mh_prince_speed(row) > 0 && (row->kind == MH_LOCATE_PRINCE || row->kind == MH_LOCATE_REGENT)) {
+    const bool foreseen = row->kind == MH_LOCATE_PRINCE || row->kind == MH_LOCATE_REGENT ||
+                          (row->kind == MH_LOCATE_COMPETITION && p->config->election != MH_PRINCE_NAMED);
+    if (mh_prince_speed(row) > 0 && foreseen) {
         const uint8_t slot = rank(p, row);
         if (slot < RANKS) {
             return window / RANKS * slot;
@@ -317,7 +319,8 @@ static mh_tick reply_wait(struct mh_prince *p, const struct mh_prince_row *row, 
 void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
 {
     const mh_real energy = mh_prince_energy(p, row, NULL, NULL);
-    if (mh_q20_to_real(p->value) < 1 || energy < LEAST_SHARE || row->state == MH_PRINCE_LOCATE) {
+    if (mh_q20_to_real(p->value) < 1 || energy < LEAST_SHARE || row->state == MH_PRINCE_LOCATE ||
+        (!row->fixed && !mh_prince_hears(p, row))) {
         return;
     }
     row->value = p->value;

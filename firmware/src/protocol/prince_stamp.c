@@ -57,7 +57,7 @@ void mh_prince_hear_detection(struct mh_prince *p, const mh_detection_t *detecti
 {
     const mh_tick detected = (mh_tick)detection->detected_ms;
     const struct mh_place place = {detection->x_mm, detection->y_mm, 0};
-    if (detection->target == 0) {
+    if (detection->generation == 1) {
         mh_prince_recognise(p, &place, detection->value_q20);
     }
     struct mh_prince_row *row =

@@ -14,6 +14,7 @@
 #define OTHERS_WAIT 200   /* ticks in which somebody else may ask first */
 #define QUERY_REST 200    /* ticks after the window of a query that was heard, until the next */
 #define SLACK_M 10.0f     /* that a target may be off where it is expected */
+#define FIX_SLACK_M 25.0f /* ... where the fix is a mirror image */
 #define NEAR_SLACK_M 5.0f /* ... as far as a competitor and an outer node care */
 #define UNKNOWN_MPS 20.0f /* that a target may go where nothing is known of it */
 #define EXPLAINED 1.5f    /* times the energy expected of the targets that are known, and what is heard is one more */
@@ -66,7 +67,7 @@ mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *
 mh_real mh_prince_drift(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     const mh_real speed_mps = mh_prince_speed(row), drift_mps = speed_mps > 0 ? speed_mps : UNKNOWN_MPS;
-    return SLACK_M + drift_mps * mh_seconds_between(row->found, p->time);
+    return FIX_SLACK_M + drift_mps * mh_seconds_between(row->found, p->time);
 }
 
 /* What is expected at `place` of a target that is `slack_m` nearer than expected. */
@@ -91,19 +92,27 @@ static mh_real explained_by_others(const struct mh_prince *p, const struct mh_pr
     return sum;
 }
 
-bool mh_prince_is_new(const struct mh_prince *p)
+/* p->value is more than all targets with a fix explain. */
+static bool is_unexplained(const struct mh_prince *p)
 {
-    bool waiting = false; /* there is one already */
     mh_real sum = 0;
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *row = &p->rows[i];
-        if (row->state != MH_PRINCE_FREE) {
-            waiting = waiting || !row->fixed;
-            sum += row->fixed ? explained_by(p, row, &p->node->place, mh_prince_drift(p, row)) : 0;
+        if (row->state != MH_PRINCE_FREE && row->fixed) {
+            sum += explained_by(p, row, &p->node->place, mh_prince_drift(p, row));
         }
     }
     const mh_real energy = mh_q20_to_real(p->value);
-    return !waiting && energy >= 1 && energy > EXPLAINED * sum;
+    return energy >= 1 && energy > EXPLAINED * sum;
+}
+
+bool mh_prince_is_new(const struct mh_prince *p)
+{
+    bool waiting = false; /* there is one already */
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        waiting = waiting || (p->rows[i].state != MH_PRINCE_FREE && !p->rows[i].fixed);
+    }
+    return !waiting && is_unexplained(p);
 }
 
 void mh_prince_recognise(struct mh_prince *p, const struct mh_place *place, mh_q20 value)
@@ -115,6 +124,18 @@ void mh_prince_recognise(struct mh_prince *p, const struct mh_place *place, mh_q
             mh_prince_remind(p, row);
         }
     }
+}
+
+bool mh_prince_is_known(const struct mh_prince *p, const struct mh_place *place)
+{
+    bool known = false;
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        const struct mh_prince_row *row = &p->rows[i];
+        if (row->state != MH_PRINCE_FREE && row->fixed) {
+            known = known || explained_by(p, row, place, mh_prince_drift(p, row)) >= 1;
+        }
+    }
+    return known;
 }
 
 /* The target may be within range, by where it was. */
@@ -129,6 +150,9 @@ bool mh_prince_hears(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     uint8_t others;
     const mh_real energy = mh_q20_to_real(p->value), own = mh_prince_energy(p, row, NULL, &others);
+    if (!row->fixed) {
+        return is_unexplained(p);
+    }
     const bool unforeseen = row->as == MH_NODE_COMPETITOR || row->as == MH_NODE_OUTER;
     if (energy < 1 || others == 0) {
         return energy >= 1;
