@@ -9,7 +9,10 @@ static enum mh_status begin(const struct mh_mote *mote, const struct mh_saved_tr
     if (!head || !head->tracker->save) {
         return MH_ERR_ARGUMENT;
     }
-    const enum mh_status status = head->tracker->init(head->tracker_state, head->tracker_config, head->interval);
+    enum mh_status status = head->tracker->init(head->tracker_state, head->tracker_config, head->interval);
+    if (status == MH_OK && head->tracker->among) { /* whose track it is counts for what is loaded */
+        status = head->tracker->among(head->tracker_state, track->target, NULL, 0);
+    }
     return status == MH_OK && track->length > 0 ? head->tracker->load(head->tracker_state, track->bytes, track->length)
                                                 : status;
 }
@@ -72,13 +75,10 @@ static enum mh_status join(void *context, const struct mh_saved_track *own, cons
         return status;
     }
     const struct mh_head_config *head = mote->config->head;
-    if (!head->tracker->join || !head->tracker->among) {
+    if (!head->tracker->join) {
         return MH_NONE;
     }
-    status = head->tracker->among(head->tracker_state, own->target, NULL, 0);
-    if (status == MH_OK) {
-        status = head->tracker->join(head->tracker_state, other);
-    }
+    status = head->tracker->join(head->tracker_state, other);
     return status == MH_OK ? save(mote, bytes, length) : status;
 }
 
