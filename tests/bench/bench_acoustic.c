@@ -1,0 +1,91 @@
+/* A step of the acoustic tracker with six nodes (BENCH_ACOUSTIC_ONE), and of one of two targets 30 m apart, with what nine nodes hear of both (BENCH_ACOUSTIC_TWO); of `dm` with the three
+ * of them that are strongest (BENCH_ACOUSTIC_DM). The nodes stand on a grid of 30 m. */
+#include "bench.h"
+#include "motehound/acoustic.h"
+#include "motehound/random.h"
+
+#include <string.h>
+
+enum { INTERVAL = 2000 };
+
+#ifdef BENCH_ACOUSTIC_TWO
+enum { NODES = 9, TARGETS = 2 };
+#else
+enum { NODES = 6, TARGETS = 1 };
+#endif
+#ifdef BENCH_ACOUSTIC_DM
+#define TRACKER mh_tracker_dm
+#else
+#define TRACKER mh_tracker_acoustic
+#endif
+
+struct mh_acoustic bench_state;
+static struct mh_measurement measurements[NODES];
+static struct mh_estimate estimate;
+static struct mh_random numbers;
+static uint8_t other[MH_ACOUSTIC_HEADER_BYTES + MH_GROUP_BYTES(1)];
+static size_t other_length;
+static mh_tick now;
+static enum mh_status status;
+
+static struct mh_place place_of(unsigned step, int target)
+{
+    const struct mh_place place = {(int32_t)(60000 + 10000 * (int32_t)(step % 32)), 95000 + (int32_t)30000 * target, 0};
+    return place;
+}
+
+static void begin(unsigned step, int target)
+{
+    struct mh_acoustic_config config;
+    mh_acoustic_config_default(&config, 40);
+#ifdef BENCH_ACOUSTIC_DM
+    config.separation = MH_SEPARATION_NONE;
+#endif
+    const struct mh_place place = place_of(step, target);
+    const struct mh_vec2 velocity = {5, 0};
+    (void)TRACKER.init(&bench_state, &config, INTERVAL);
+    (void)mh_acoustic_begin(&bench_state, (uint32_t)target, now - INTERVAL, &place, velocity, 2, 1);
+}
+
+void bench_setup(void) { mh_random_init(&numbers, 1); }
+
+static mh_real energy_at(const struct mh_place *node, unsigned step)
+{
+    mh_real energy = 0;
+    for (int k = 0; k < TARGETS; k++) {
+        const struct mh_place target = place_of(step, k);
+        const struct mh_vec2 away = mh_place_relative(node, &target);
+        energy += 1600.0f / mh_max(mh_squared(away.x) + mh_squared(away.y), 1.0f);
+    }
+    return energy * (1 + 0.3f * (2 * mh_random_unit(&numbers) - 1));
+}
+
+/* The nodes of the three columns, and of the rows, about the targets. */
+void bench_prepare(unsigned step)
+{
+    const struct mh_place target = place_of(step + 1, 0);
+    now += INTERVAL;
+    begin(step, 1);
+    (void)TRACKER.save(&bench_state, other, &other_length);
+    begin(step, 0);
+    for (int i = 0; i < NODES; i++) {
+        struct mh_measurement *m = &measurements[i];
+        memset(m, 0, sizeof *m);
+        m->node = (mh_node_id)i;
+        m->place.x_mm = 30000 * ((target.x_mm + 15000) / 30000 - 1 + i % 3);
+        m->place.y_mm = 80000 + (int32_t)30000 * (i / 3);
+        m->time = now;
+        m->value = mh_q20_from_real(mh_max(energy_at(&m->place, step + 1), 1.0f));
+    }
+    if (TARGETS > 1) {
+        const struct mh_saved_track beside = {1, other, other_length};
+        (void)TRACKER.among(&bench_state, 0, &beside, 1);
+    }
+}
+
+void bench_step(void) { status = TRACKER.step(&bench_state, now, measurements, NODES, &estimate); }
+
+bool bench_worked(void)
+{
+    return status == MH_OK && estimate.measurements == NODES && !(estimate.flags & MH_ESTIMATE_COASTED);
+}
