@@ -321,9 +321,9 @@
 #if MH_FUSED_MAX < 2 || MH_FUSED_MAX > 16
 #error "MH_FUSED_MAX must be 2 to 16: feedback has a bit for each cluster in two bytes"
 #endif
-#if MH_TARGETS_MAX < 1 || MH_TARGETS_MAX > 16 || MH_GROUP_MAX < 2 || MH_GROUP_MAX > 8
+#if MH_TARGETS_MAX < 1 || MH_TARGETS_MAX > 16 || MH_GROUP_MAX < 1 || MH_GROUP_MAX > 8
 #error                                                                                                                 \
-    "MH_TARGETS_MAX must be 1 to 16: the table is searched linearly; MH_GROUP_MAX 2 to 8: its targets travel in one message"
+    "MH_TARGETS_MAX must be 1 to 16: the table is searched linearly; MH_GROUP_MAX 1 to 8: its targets travel in one message"
 #endif
 #if MH_SOURCES_MAX < 2 || MH_SOURCES_MAX > 8
 #error "MH_SOURCES_MAX must be 2 to 8: a fit solves twice as many equations at once"

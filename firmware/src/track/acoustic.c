@@ -46,8 +46,8 @@ static enum mh_status begin(void *state, const struct mh_acoustic_kind *kind, co
     if (acoustic == NULL || config == NULL || interval < 1 || interval > 3600000u || !valid(config)) {
         return MH_ERR_ARGUMENT;
     }
-    if (kind->locate_jointly == NULL &&
-        (config->separation == MH_SEPARATION_JOINT || config->group.mode != MH_GROUP_NONE)) {
+    if ((kind->locate_jointly == NULL && config->separation == MH_SEPARATION_JOINT) ||
+        (kind->approach == NULL && config->group.mode != MH_GROUP_NONE)) {
         return MH_ERR_ARGUMENT;
     }
     memset(acoustic, 0, sizeof *acoustic);

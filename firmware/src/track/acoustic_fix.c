@@ -281,7 +281,10 @@ static bool approach(const struct mh_acoustic_config *config, struct mh_acoustic
     return mh_group_approach(&scene->own.group, &config->group, neighbours, scene->others_count);
 }
 
-const struct mh_acoustic_kind mh_acoustic_kind_gn = {locate_gn, reconsider_gn, locate_jointly, mh_acoustic_find_group,
-                                                     approach};
+/* what a build of these capacities never calls is not linked */
+#define TOGETHER (MH_TARGETS_MAX > 1 || MH_GROUP_MAX > 1)
+#define GROUPS (MH_GROUP_MAX > 1)
+const struct mh_acoustic_kind mh_acoustic_kind_gn = {locate_gn, reconsider_gn, TOGETHER ? locate_jointly : NULL,
+                                                     GROUPS ? mh_acoustic_find_group : NULL, GROUPS ? approach : NULL};
 const struct mh_acoustic_kind mh_acoustic_kind_dm = {locate_dm, NULL, NULL, NULL, NULL};
 const struct mh_acoustic_kind mh_acoustic_kind_ml = {locate_ml, NULL, NULL, NULL, NULL};
