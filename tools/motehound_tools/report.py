@@ -299,6 +299,8 @@ def facts(results: Output, varied: str) -> list[tuple[str, str]]:
                 value = scenario[section][key]
                 if (section, key) == ("network", "nodes") and scenario[section].get("layout") == "strat":
                     value = scenario[section]["grid"] ** 2
+                if (section, key) == ("network", "protocol") and scenario[section].get("ideal"):
+                    value += ", ideal"
                 said.append((label, f"{value:g}{unit}" if isinstance(value, (int, float)) else f"{value}{unit}"))
     return said
 

@@ -148,7 +148,7 @@ def test_every_target_has_its_colour_and_a_group_its_extent() -> None:
     ]
     assert [error for *_, error in targets.summary(run, 12.5)] == ["1.41 m"] * 2
     error = scene.timeline(run)["error"]
-    assert error["color"] == list(TARGETS[:3]) and [len(ys) for ys in error["ys"]] == [10, 7, 10]
+    assert error["color"] == list(TARGETS[:3]) and [len(ys) for ys in error["ys"]] == [10, 8, 10]
 
 
 def test_each_target_has_its_cluster() -> None:

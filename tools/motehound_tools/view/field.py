@@ -28,7 +28,7 @@ TIPS = [
     ("energy spent", "@energy{0,0.0} mJ"),
     ("clock error", "@clock_error{0.000} ms"),
 ]
-AWAKE, ASLEEP = 0.75, 0.3  # how opaque a mote is; with clusters and heads that watch, most sleep
+AWAKE, ASLEEP = 0.75, 0.3  # how opaque a mote is; with clusters, or several targets, most sleep
 FONT = "Inter, 'Segoe UI', system-ui, 'Helvetica Neue', Arial, sans-serif"
 OUTLINE = "rgba(255, 255, 255, 0.65)"
 MARGINS = {
@@ -220,7 +220,7 @@ class Field:
     def move(self, run: Run, motes: scene.Motes, time: float, linger: float, colours: np.ndarray) -> int:
         """Everything that moves, as it is at this time; how many frames that shows."""
         frames = scene.frames_in_air(run, motes, time, linger, colours)
-        self.mote.fill_alpha = ASLEEP if len(run.clusters) or len(run.watch) else AWAKE
+        self.mote.fill_alpha = ASLEEP if len(run.clusters) or targets.are_told_apart(run) else AWAKE
         layers = frames | targets.truths(run, time) | targets.tracks(run, time) | targets.watches(run, time)
         layers |= scene.clusters(run, time) | scene.sink_view(run, time)
         for name, data in layers.items():

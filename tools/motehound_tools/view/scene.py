@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from ..recording import Run
 from .colours import CLUSTER
-from .targets import TRAIL_S, colour, watched
+from .targets import TRAIL_S, colour, gaps, watched
 
 POINTS_MAX = 2000  # of a line of the timeline
 FRAMES_MAX = 1500  # drawn at once; the newest ones
@@ -141,10 +141,10 @@ def timeline(run: Run, bins: int = 240) -> dict[str, dict[str, np.ndarray]]:
     tracks = tracks[np.isfinite(tracks["error"])]
     lines: dict[str, list] = {"xs": [], "ys": [], "color": []}
     for target in np.unique(tracks["target"]):
-        known = tracks[tracks["target"] == target]
-        known = known[:: max(1, len(known) // POINTS_MAX)]
-        lines["xs"].append(known["time"])
-        lines["ys"].append(known["error"])
+        known, between = tracks[tracks["target"] == target], gaps(tracks, target)
+        every = max(1, len(known) // POINTS_MAX)
+        lines["xs"].append(np.insert(known["time"], between, np.nan)[::every])
+        lines["ys"].append(np.insert(known["error"], between, np.nan)[::every])
         lines["color"].append(colour(run, target))
     return {
         "traffic": {"time": (edges[1:] + edges[:-1]) / 2.0, "rate": count / (edges[1] - edges[0])},

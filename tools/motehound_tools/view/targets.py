@@ -85,16 +85,22 @@ def newest(run: Run, time: float) -> Iterator[tuple[np.ndarray, np.void]]:
             yield mine, mine[-1]
 
 
+def gaps(rows: np.ndarray, target: int) -> np.ndarray:
+    """Before which of its estimates a target was in the group of another."""
+    elsewhere = rows["time"][(rows["of"] == target).any(axis=1) & (rows["target"] != target)]
+    times = rows["time"][rows["target"] == target]
+    return np.flatnonzero(np.diff(np.searchsorted(elsewhere, times, "right"))) + 1
+
+
 def tracks(run: Run, time: float) -> dict[str, Columns]:
     """Of every target the path of the estimates, the newest of them, its ellipse and what it is called; of a group its extent."""
     rows = run.track.between(time - TRAIL_S, time)
     paths: Columns = {"xs": [], "ys": [], "color": []}
     for target in np.unique(rows["target"]):
         mine = rows[rows["target"] == target]
-        elsewhere = rows["time"][(rows["of"] == target).any(axis=1) & (rows["target"] != target)]
-        gaps = np.flatnonzero(np.diff(np.searchsorted(elsewhere, mine["time"], "right"))) + 1
-        paths["xs"].append(np.insert(mine["x"], gaps, np.nan))  # parted where it was in the group of another
-        paths["ys"].append(np.insert(mine["y"], gaps, np.nan))
+        between = gaps(rows, target)
+        paths["xs"].append(np.insert(mine["x"], between, np.nan))
+        paths["ys"].append(np.insert(mine["y"], between, np.nan))
         paths["color"].append(colour(run, target))
     ellipses: Columns = {"xs": [], "ys": [], "color": []}
     heads: Columns = {"x": [], "y": [], "error": [], "color": [], "label": []}

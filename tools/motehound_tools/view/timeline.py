@@ -44,5 +44,5 @@ class Timeline:
         error = np.concatenate([[], *lines["error"]["ys"]])
         self.figure.x_range.end = end
         self.figure.y_range.end = 1.1 * float(lines["traffic"]["rate"].max(initial=1.0))
-        high = float(np.percentile(error, 99)) if len(error) else 1.0
+        high = float(np.nanpercentile(error, 99)) if len(error) else 1.0
         self.figure.extra_y_ranges["error"].end = 1.1 * max(high, 1e-3)
