@@ -232,7 +232,7 @@ static void set_up_acoustic(struct tracker_choice *choice, const struct scenario
                             const struct mh_region *region)
 {
     const bool joint = choice->tracker == &mh_tracker_acoustic; /* the others cannot */
-    const double least = 1e-3;                                  /* of a sensor without noise */
+    const double least = 1e-3, slowest_mps = 0.1;               /* of a sensor without noise; what the tracker bears */
     struct mh_acoustic_config *config = &choice->config.acoustic;
     mh_acoustic_config_default(config, (mh_real)scenario->sensor.range_m);
     config->sound.loudness_m2 = loudness_of(scenario);
@@ -248,7 +248,7 @@ static void set_up_acoustic(struct tracker_choice *choice, const struct scenario
     }
     config->filtered = scenario->tracker.filtered;
     config->mirror_check = scenario->protocol.guards > 0;
-    config->speed_mps = (mh_real)target_of(scenario, region).speed_mps;
+    config->speed_mps = (mh_real)fmax(target_of(scenario, region).speed_mps, slowest_mps);
     mh_group_config_default(&config->group, scenario->tracker.groups);
 }
 

@@ -1,6 +1,7 @@
 /* What only holds between the keys of a scenario. */
 #include "motehound/config.h"
 #include "radio/profile.h"
+#include "radio/radio.h"
 #include "scenario/keys.h"
 #include "scenario/text.h"
 #include "world/clusters.h"
@@ -272,6 +273,25 @@ static int check_search(const struct scenario *scenario, const char *name, char 
     return 0;
 }
 
+static int check_scripted(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    if (scenario->targets_count == 0) {
+        return fail(error, error_size, "%s: targets: expected at least one for source.path scripted, found none", name);
+    }
+    for (unsigned i = 0; i < scenario->targets_count; i++) {
+        const struct scripted_target *target = &scenario->targets[i];
+        double length_m = 0;
+        for (unsigned j = 1; j < target->points_count; j++) {
+            length_m += leg_length(&target->points[j - 1], &target->points[j]);
+        }
+        if (length_m <= 0) {
+            return fail(error, error_size, "%s: targets[%u].points: expected at least 2 different ones, found %u", name,
+                        i, target->points_count);
+        }
+    }
+    return 0;
+}
+
 /* Several targets can only be heard, and where they go. */
 static int check_targets(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
@@ -292,8 +312,8 @@ static int check_targets(const struct scenario *scenario, const char *name, char
         return fail(error, error_size,
                     "%s: source.path: expected one of a single source unless sensor.quantity is sound", name);
     }
-    if (path == PATH_SCRIPTED && scenario->targets_count == 0) {
-        return fail(error, error_size, "%s: targets: expected at least one for source.path scripted, found none", name);
+    if (path == PATH_SCRIPTED) {
+        return check_scripted(scenario, name, error, error_size);
     }
     const struct scenario_field field = scenario_field(scenario);
     if (path == PATH_RANDOM || path == PATH_SCATTERED) {
@@ -310,9 +330,35 @@ static int check_targets(const struct scenario *scenario, const char *name, char
         return 0;
     }
     const unsigned points = scenario->source.points_count;
-    if (path != PATH_SCRIPTED &&
-        (points < 2 || leg_length(&scenario->source.points[0], &scenario->source.points[1]) <= 0)) {
+    if (points < 2 || leg_length(&scenario->source.points[0], &scenario->source.points[1]) <= 0) {
         return fail(error, error_size, "%s: source.points: expected 2 different ones, found %u", name, points);
+    }
+    return 0;
+}
+
+/* What nodes that hear targets and lead each other to them must be able to. */
+static int check_prince(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const double range_m = scenario->sensor.range_m, interval_s = scenario->sensor.interval_s;
+    const double radio_m = radio_nominal_range_m(scenario);
+    if (range_m < 1 || range_m > 1000) {
+        return fail(error, error_size, "%s: sensor.range_m: expected 1 to 1000 for network.protocol prince, found %g",
+                    name, range_m);
+    }
+    if (radio_m <= range_m || radio_m > 1e4) {
+        return fail(error, error_size,
+                    "%s: radio.range_m: expected radios that reach farther than sensor.range_m = %g, and at most "
+                    "10000 m, for network.protocol prince, found %g m",
+                    name, range_m, radio_m);
+    }
+    if (interval_s < 0.02 || interval_s > 60) {
+        return fail(error, error_size,
+                    "%s: sensor.interval_s: expected 0.02 to 60 for network.protocol prince, found %g", name,
+                    interval_s);
+    }
+    if (scenario->protocol.watch_s > 0 && scenario->protocol.watch_s < interval_s) {
+        return fail(error, error_size, "%s: protocol.watch_s: expected 0 or at least sensor.interval_s = %g, found %g",
+                    name, interval_s, scenario->protocol.watch_s);
     }
     return 0;
 }
@@ -357,6 +403,7 @@ static int check_clusters(const struct scenario *scenario, const char *name, cha
     if (!scenario->network.ideal) {
         return clusters ? check_rhythm(scenario, name, error, error_size)
                : walks  ? check_search(scenario, name, error, error_size)
+               : hears  ? check_prince(scenario, name, error, error_size)
                         : 0;
     }
     struct faults faults;
@@ -473,6 +520,26 @@ int scenario_check(const struct scenario *scenario, const char *name, char *erro
     return scenario_check_tracking(scenario, name, error, error_size);
 }
 
+/* Of trackers of targets that are heard. */
+static int check_hearing(const struct scenario *scenario, const char *name, char *error, size_t error_size)
+{
+    const double range_m = scenario->sensor.range_m, loudness_m2 = scenario->source.loudness * range_m * range_m;
+    if (range_m < 1 || loudness_m2 < 1 || loudness_m2 > 1e8) {
+        return fail(error, error_size,
+                    "%s: sensor.range_m: expected at least 1, and source.loudness sensor.range_m^2 from 1 to 1e8 m2, "
+                    "found %g m and %g m2",
+                    name, range_m, loudness_m2);
+    }
+    if (scenario->tracker.strongest == 1) {
+        return fail(error, error_size, "%s: tracker.strongest: expected 0 or at least 2, found 1", name);
+    }
+    if (scenario->tracker.groups != MH_GROUP_NONE && strcmp(scenario->tracker.name, "acoustic") != 0) {
+        return fail(error, error_size, "%s: tracker.groups: expected none unless tracker.name is acoustic, found %s",
+                    name, scenario->tracker.name);
+    }
+    return 0;
+}
+
 int scenario_check_tracking(const struct scenario *scenario, const char *name, char *error, size_t error_size)
 {
     const struct {
@@ -490,6 +557,9 @@ int scenario_check_tracking(const struct scenario *scenario, const char *name, c
     if (scenario->tracker.window_s >= scenario->sensor.interval_s) {
         return fail(error, error_size, "%s: tracker.window_s: expected less than sensor.interval_s = %g, found %g",
                     name, scenario->sensor.interval_s, scenario->tracker.window_s);
+    }
+    if (scenario->sensor.quantity == QUANTITY_SOUND && check_hearing(scenario, name, error, error_size) != 0) {
+        return -1;
     }
     if (strcmp(scenario->tracker.name, "diffusion") == 0 && scenario->tracker.chi < 1e-3) {
         return fail(error, error_size, "%s: tracker.chi: expected at least 0.001 for tracker diffusion, found %g", name,

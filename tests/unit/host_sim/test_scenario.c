@@ -300,6 +300,40 @@ static void the_scenarios_that_come_along_are_sound(void)
     TEST_ASSERT_EQUAL_INT(-1, scenario_find("./luo_exp1", path, error, sizeof error));
 }
 
+static void targets_that_are_heard_have_limits(void)
+{
+    static const char *const cases[][3] = {
+        {"sensor.range_m", "0.5", "sensor.range_m: expected 1 to 1000"},
+        {"sensor.range_m", "140", "radio.range_m: expected radios that reach farther than sensor.range_m = 140"},
+        {"sensor.interval_s", "0.01", "sensor.interval_s: expected 0.02 to 60"},
+        {"protocol.watch_s", "0.2", "protocol.watch_s: expected 0 or at least sensor.interval_s = 0.25, found 0.2"},
+        {"tracker.groups", "members", "tracker.groups: expected none unless tracker.name is acoustic, found dm"},
+        {"tracker.strongest", "1", "tracker.strongest: expected 0 or at least 2, found 1"},
+        {"targets", "0,1,1: 1,1", "targets: expected none unless source.path is scripted, found 1"},
+        {"source.path", "scripted", "targets: expected at least one for source.path scripted, found none"},
+        {"protocol.election", "sacx", "protocol.election: expected prince, competition or timestamp"},
+    };
+    char path[SCENARIO_PATH_MAX];
+    TEST_ASSERT_EQUAL_INT(0, scenario_find("han_straight", path, error, sizeof error));
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct scenario heard;
+        TEST_ASSERT_EQUAL_INT(0, scenario_init(&heard));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &heard, error, sizeof error), error);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_set(&heard, cases[i][0], cases[i][1], error, sizeof error), error);
+        TEST_ASSERT_EQUAL_INT(-1, scenario_check(&heard, "s", error, sizeof error));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error, cases[i][2]), error);
+        scenario_free(&heard);
+    }
+    struct scenario still;
+    TEST_ASSERT_EQUAL_INT(0, scenario_init(&still));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, scenario_load(path, &still, error, sizeof error), error);
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&still, "source.path", "scripted", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(0, scenario_set(&still, "targets", "0,1,1: 1,1; 9,9 | 0,1,1: 5,5; 5,5", error, sizeof error));
+    TEST_ASSERT_EQUAL_INT(-1, scenario_check(&still, "s", error, sizeof error));
+    TEST_ASSERT_EQUAL_STRING("s: targets[1].points: expected at least 2 different ones, found 2", error);
+    scenario_free(&still);
+}
+
 static void a_deployment_file_is_found_beside_its_scenario(void)
 {
     char folder[] = "/tmp/motehound-XXXXXX", path[100], expected[100];
@@ -326,6 +360,7 @@ int main(void)
     RUN_TEST(keys_that_contradict_each_other_are_refused);
     RUN_TEST(a_ranged_target_in_clusters_has_limits);
     RUN_TEST(fixed_clusters_have_limits);
+    RUN_TEST(targets_that_are_heard_have_limits);
     RUN_TEST(the_scenarios_that_come_along_are_sound);
     RUN_TEST(a_deployment_file_is_found_beside_its_scenario);
     port_exit(UNITY_END() > 0);
