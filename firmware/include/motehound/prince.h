@@ -163,9 +163,7 @@ struct mh_prince_row {
     bool is_prince : 1;
     bool is_passive : 1;      /* somebody has taken over: only answers, until the next awake_t */
     bool fixed : 1;           /* there is a fix: what follows holds */
-    bool was_head : 1;        /* of this generation, or had it in mind */
     bool tried : 1;           /* locator: this is the second try */
-    bool merging : 1;         /* head: has asked the head of `other` */
     mh_tick found;            /* the fix: when, ... */
     int32_t x_mm, y_mm;       /* ... where, ... */
     int16_t vx_cmps, vy_cmps; /* ... and how the target moves; 0, 0: unknown */
@@ -200,7 +198,6 @@ struct mh_prince_row {
     mh_q20 best_value;  /* ... its energy; timestamp: ... */
     mh_tick best_time;  /* ... when it detected the target */
 
-    uint32_t other;   /* MERGE: the target that this one has come near to */
     uint8_t gathered; /* bytes of the saved track that have come ... */
     uint8_t length;   /* ... of so many */
     uint8_t bytes[MH_PRINCE_TRACK_BYTES];

@@ -4,8 +4,7 @@
 
 #define PART_STAYS 10000u /* ticks that a part is taken to stay near, until it is known */
 
-#define SAME_M                                                                                                         \
-    20.0f /* a target found first so near to where another is known to be is that, though it may have drifted farther */
+#define SAME_M 25.0f /* a target found first so near to where another is known to be is that */
 
 static void say_merge(struct mh_prince *p, const struct mh_prince_row *row, uint32_t other, bool answers)
 {
@@ -21,22 +20,26 @@ static void say_merge(struct mh_prince *p, const struct mh_prince_row *row, uint
 bool mh_prince_claims(struct mh_prince *p, const mh_awake_t *awake)
 {
     const struct mh_place found = {awake->x_mm, awake->y_mm, 0};
+    bool known = false;
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         struct mh_prince_row *row = &p->rows[i];
-        if (row->state == MH_PRINCE_HEAD && row->target != (uint32_t)awake->target) {
-            const struct mh_vec2 off = mh_prince_expected(p, row, &found);
-            const mh_real reach_m = mh_prince_speed(row) > 0 ? SAME_M : mh_prince_drift(p, row);
-            if (mh_squared(off.x) + mh_squared(off.y) <= mh_squared(reach_m)) {
-                struct mh_prince_row *other = mh_prince_find(p, (uint32_t)awake->target);
-                if (other) {
-                    mh_prince_drop(p, other);
-                }
+        if (row->state == MH_PRINCE_FREE || !row->fixed || row->target == (uint32_t)awake->target) {
+            continue;
+        }
+        const struct mh_vec2 off = mh_prince_expected(p, row, &found);
+        const mh_real reach_m = mh_prince_speed(row) > 0 ? SAME_M : mh_prince_drift(p, row);
+        if (mh_squared(off.x) + mh_squared(off.y) <= mh_squared(reach_m)) {
+            known = true;
+            if (row->state == MH_PRINCE_HEAD) {
                 say_merge(p, row, (uint32_t)awake->target, true);
-                return true;
             }
         }
     }
-    return false;
+    struct mh_prince_row *other = mh_prince_find(p, (uint32_t)awake->target);
+    if (known && other) {
+        mh_prince_drop(p, other);
+    }
+    return known;
 }
 
 /* What the row's track, as saved, says -> estimate, with the flags that it was found with. */

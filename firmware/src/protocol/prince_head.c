@@ -284,7 +284,7 @@ static void take_awake(struct mh_prince_row *row, const mh_awake_t *awake)
     row->head = (mh_node_id)awake->sender;
     row->prince = (mh_node_id)awake->prince;
     row->fixed = true;
-    row->is_passive = row->merging = false;
+    row->is_passive = false;
     row->found = (mh_tick)awake->time_ms;
     row->x_mm = awake->x_mm;
     row->y_mm = awake->y_mm;
@@ -351,7 +351,7 @@ void mh_prince_hear_fail(struct mh_prince *p, const mh_fail_t *fail)
         return;
     }
     const struct mh_place place = {fail->x_mm, fail->y_mm, 0};
-    if (fail->generation == 0 && mh_prince_is_known(p, &place)) {
+    if (!mh_prince_find(p, (uint32_t)fail->target) && mh_prince_is_known(p, &place)) {
         mh_prince_recognise(p, &place, mh_q20_from_real(1));
         return;
     }

@@ -161,7 +161,7 @@ void mh_prince_hear_succeed(struct mh_prince *p, const mh_succeed_t *succeed);
  * that is one no more. */
 void mh_prince_regroup(struct mh_prince *p, struct mh_prince_row *row, const struct mh_estimate *estimate);
 
-/* A new target was found where this head's may be: it is this head's, and is said so. Returns false if there is no such. */
+/* A new target was found where one that is known may be: it is that, whose head says so. Returns false if there is no such. */
 bool mh_prince_claims(struct mh_prince *p, const mh_awake_t *awake);
 
 void mh_prince_hear_merge(struct mh_prince *p, const mh_merge_t *merge);
