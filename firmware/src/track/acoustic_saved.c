@@ -66,7 +66,7 @@ static bool sane(const struct mh_kalman *filter)
             return false;
         }
     }
-    for (uint8_t i = 0; i < MOTION; i++) {
+    for (uint8_t i = 0; i < (uint8_t)MOTION; i++) {
         if (!mh_within(filter->ud[MH_PACKED(i, i)], LEAST_VARIANCE * LEAST_VARIANCE, MOST_VARIANCE) ||
             !mh_within(mh_kalman_variance(filter, i), LEAST_VARIANCE, MOST_VARIANCE)) {
             return false;
