@@ -11,19 +11,27 @@ void mh_prince_detect(struct mh_prince *p, struct mh_prince_row *row)
     mh_prince_enter(p, row);
 }
 
+static void retire(struct mh_prince *p, struct mh_prince_row *row)
+{
+    mh_prince_discard(p, row);
+    mh_prince_hold_back(p, row);
+}
+
 void mh_prince_say_detection(struct mh_prince *p, struct mh_prince_row *row)
 {
-    if (row->contenders < MH_PRINCE_CONTENDERS) {
-        const struct mh_message message = {.kind = MH_MESSAGE_DETECTION,
-                                           .as.detection = {.sender = (int32_t)p->node->id,
-                                                            .target = (int32_t)row->target,
-                                                            .generation = (int16_t)(uint16_t)(row->generation + 1u),
-                                                            .detected_ms = (int32_t)row->asked,
-                                                            .x_mm = p->node->place.x_mm,
-                                                            .y_mm = p->node->place.y_mm,
-                                                            .value_q20 = row->value}};
-        mh_prince_send(p, &message);
+    if (row->contenders >= MH_PRINCE_CONTENDERS) { /* nobody has heard of this node: it cannot be the first */
+        retire(p, row);
+        return;
     }
+    const struct mh_message message = {.kind = MH_MESSAGE_DETECTION,
+                                       .as.detection = {.sender = (int32_t)p->node->id,
+                                                        .target = (int32_t)row->target,
+                                                        .generation = (int16_t)(uint16_t)(row->generation + 1u),
+                                                        .detected_ms = (int32_t)row->asked,
+                                                        .x_mm = p->node->place.x_mm,
+                                                        .y_mm = p->node->place.y_mm,
+                                                        .value_q20 = row->value}};
+    mh_prince_send(p, &message);
     mh_prince_plan_decision(p, row, row->asked);
 }
 
@@ -40,8 +48,7 @@ static void say_suppress(struct mh_prince *p, const struct mh_prince_row *row, u
 void mh_prince_decide_first(struct mh_prince *p, struct mh_prince_row *row)
 {
     if (row->best != p->node->id) {
-        mh_prince_discard(p, row);
-        mh_prince_hold_back(p, row);
+        retire(p, row);
         return;
     }
     if (mh_prince_collected(p, row) >= MH_PRINCE_ANSWERS) {
