@@ -63,12 +63,14 @@ struct identified identify_estimate(struct identify *identify, const struct targ
 {
     const struct point at = identify_place(estimate);
     const unsigned members = estimate->members > 1 ? estimate->members : 1;
+    struct identify provisional = *identify; /* who is met first in a group is nobody in particular yet */
+    struct identify *matched = members > 1 ? &provisional : identify;
     struct identified found = {.number = NOT_IDENTIFIED};
     struct target_state *middle = &found.state;
     double count = 0;
     for (unsigned i = 0; i < members && i < MH_GROUP_MAX; i++) {
         const uint32_t id = members > 1 ? estimate->of[i] : estimate->target;
-        const uint32_t number = identify_target(identify, targets, id, at, time_s);
+        const uint32_t number = identify_target(matched, targets, id, at, time_s);
         const struct target_state state =
             number != NOT_IDENTIFIED ? targets_at(targets, number, time_s) : (struct target_state){0};
         found.number = members > 1 ? NOT_IDENTIFIED : number;

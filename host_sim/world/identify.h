@@ -1,6 +1,7 @@
 /* Which true target an identifier of the network stands for. An identifier is matched when it is first heard of, and for good: to the target nearest to its first estimate
  * that no other identifier has, if that is within twice the sensing range, else to the nearest of all. So a track that changes over to another target is found out, and
- * one that is begun anew is not taken for a target far away. A group is matched target by target, and compared with the middle of those. */
+ * one that is begun anew is not taken for a target far away. A group is matched target by target, those that were never heard of alone for
+ * this once, and compared with the middle of those. */
 #ifndef MOTEHOUND_SIM_IDENTIFY_H
 #define MOTEHOUND_SIM_IDENTIFY_H
 

@@ -8,7 +8,8 @@
  *   numbers the one with the lower identifier, says so (MH_ESTIMATE_MERGE) and takes the other in. Each target's velocity when it was last alone is kept.
  * - Split: linking all members that are less than split_m apart leaves more than one part, of the same sizes in split_epochs instants in a row
  *   (MH_ESTIMATE_SPLIT). The parts get their targets by least squares between the velocity of the parts over those instants and the velocities kept. Where another
- *   allotment would be nearly as good, for the targets may have turned meanwhile, all parts are marked: MH_ESTIMATE_UNRESOLVED.
+ *   allotment would be nearly as good, for the targets may have turned meanwhile, the parts that it differs in are marked: MH_ESTIMATE_UNRESOLVED. Targets that were found in the group have
+ *   never been anybody in particular: which of them gets which part does not matter.
  * merge_m < split_m and the counts are the hysteresis.
  *
  * All is kept as coarsely as it is known and exactly as it is saved (offsets in half metres within +- 63.5, velocities in quarters of m/s within +- 31.75,
@@ -46,7 +47,7 @@ struct mh_group_config {
         odds; /* UNRESOLVED where the second best allotment is not this many times less likely, 1 to 1e6, nominal 20 */
 };
 
-/* A target of a group: who it is, and its velocity when it was last alone. */
+/* A target of a group: who it is, and its velocity when it was last alone; vx -128: it never was. */
 struct mh_group_target {
     uint32_t target;
     int8_t vx, vy;  /* quarters of m/s */

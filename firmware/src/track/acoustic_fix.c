@@ -226,7 +226,9 @@ static enum mh_status locate_jointly(const struct mh_acoustic_config *config, st
         return mh_acoustic_weigh(config, scene, seconds, fix);
     }
     const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
-    size_t count = sources_of(config, group, mh_acoustic_position(&scene->own), &covariance, sources);
+    const struct mh_vec2 expected =
+        group->count > 1 ? mh_acoustic_expected_centroid(config, scene) : mh_acoustic_position(&scene->own);
+    size_t count = sources_of(config, group, expected, &covariance, sources);
     for (uint8_t i = nearest(scene, first); i < scene->others_count; i = nearest(scene, first)) {
         const struct mh_acoustic_other *other = &scene->others[i];
         if (count + other->group.count > MH_SOURCES_MAX) {

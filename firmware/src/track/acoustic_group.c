@@ -66,39 +66,62 @@ void mh_acoustic_find_group(const struct mh_acoustic_config *config, struct mh_a
 
 /* ---- a group by weights ---- */
 
-/* What is heard nearer to another centroid than to the own one is left out. */
-static void leave_others(struct mh_acoustic_scene *scene)
+/* Nearer to the own centroid than to another's. */
+static bool is_own(const struct mh_acoustic_scene *scene, struct mh_vec2 place)
 {
-    size_t count = 0;
     const struct mh_vec2 own = mh_acoustic_position(&scene->own);
-    for (size_t i = 0; i < scene->heard_count; i++) {
-        const struct mh_heard heard = scene->heard[i];
-        const mh_real square = mh_squared(heard.place.x - own.x) + mh_squared(heard.place.y - own.y);
-        bool nearer = true;
-        for (uint8_t j = 0; j < scene->others_count; j++) {
-            const struct mh_vec2 other = scene->others[j].position;
-            nearer = nearer && square <= mh_squared(heard.place.x - other.x) + mh_squared(heard.place.y - other.y);
-        }
-        if (nearer) {
-            scene->heard[count++] = heard;
+    const mh_real square = mh_squared(place.x - own.x) + mh_squared(place.y - own.y);
+    for (uint8_t j = 0; j < scene->others_count; j++) {
+        const struct mh_vec2 other = scene->others[j].position;
+        if (mh_squared(place.x - other.x) + mh_squared(place.y - other.y) < square) {
+            return false;
         }
     }
-    scene->heard_count = count;
+    return true;
 }
 
-static struct mh_vec2 weighted_centroid(const struct mh_heard *heard, size_t count)
+/* Of what is the own group's -> centroid. Returns false if nothing is. */
+static bool weigh(const struct mh_acoustic_scene *scene, struct mh_vec2 *centroid)
 {
     struct mh_vec2 sum = {0, 0};
     mh_real weights = 0;
-    for (size_t i = 0; i < count; i++) {
-        const mh_real weight = mh_exp(WEIGHT_POWER * mh_log(mh_clamp(heard[i].energy, 1.0f, WEIGHT_MOST)));
-        sum.x += weight * heard[i].place.x;
-        sum.y += weight * heard[i].place.y;
-        weights += weight;
+    for (size_t i = 0; i < scene->heard_count; i++) {
+        const struct mh_heard *heard = &scene->heard[i];
+        if (is_own(scene, heard->place)) {
+            const mh_real weight = mh_exp(WEIGHT_POWER * mh_log(mh_clamp(heard->energy, 1.0f, WEIGHT_MOST)));
+            sum.x += weight * heard->place.x;
+            sum.y += weight * heard->place.y;
+            weights += weight;
+        }
     }
-    sum.x /= weights;
-    sum.y /= weights;
-    return sum;
+    if (!(weights > 0)) {
+        return false;
+    }
+    centroid->x = sum.x / weights;
+    centroid->y = sum.y / weights;
+    return true;
+}
+
+struct mh_vec2 mh_acoustic_expected_centroid(const struct mh_acoustic_config *config,
+                                             const struct mh_acoustic_scene *scene)
+{
+    const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
+    struct mh_vec2 centroid = mh_acoustic_position(&scene->own);
+    if (0.5f * (covariance.xx + covariance.yy) > mh_squared(config->group.member_sd_m)) {
+        (void)weigh(scene, &centroid);
+    }
+    return centroid;
+}
+
+static void leave_others(struct mh_acoustic_scene *scene)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < scene->heard_count; i++) {
+        if (is_own(scene, scene->heard[i].place)) {
+            scene->heard[count++] = scene->heard[i];
+        }
+    }
+    scene->heard_count = count;
 }
 
 /* Where two sources are looked for: at the members farthest apart, or, where these are together, on the line on which the nodes lie. */
@@ -141,19 +164,20 @@ enum mh_status mh_acoustic_weigh(const struct mh_acoustic_config *config, struct
                                  mh_real seconds, struct mh_acoustic_fix *fix)
 {
     struct mh_group *group = &scene->own.group;
+    struct mh_vec2 centroid;
+    if (!weigh(scene, &centroid)) {
+        return MH_NONE;
+    }
+    const struct mh_vec2 expected = mh_acoustic_expected_centroid(config, scene);
     leave_others(scene);
     const struct mh_heard *heard = scene->heard;
     const size_t count = scene->heard_count;
-    if (count == 0) {
-        return MH_NONE;
-    }
-    const struct mh_vec2 centroid = weighted_centroid(heard, count);
 
     /* Two sources of n targets together, however those are divided: the best fit. */
     struct mh_vec2 start[2], best[2];
     mh_real least = INFINITY;
     uint8_t at_first = 0;
-    begin_two(group, mh_acoustic_position(&scene->own), heard, count, start);
+    begin_two(group, expected, heard, count, start);
     best[0] = best[1] = centroid;
     for (uint8_t first = 1; first < group->count; first++) {
         const struct mh_source sources[2] = {

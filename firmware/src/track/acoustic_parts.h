@@ -94,6 +94,10 @@ mh_real mh_acoustic_surprise(const struct mh_acoustic_track *track, const struct
 void mh_acoustic_find_group(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                             struct mh_acoustic_fix *fix);
 
+/* Where the own group's centroid is expected: as predicted, or where that is less certain than its members' offsets, by the weights of the nodes. */
+struct mh_vec2 mh_acoustic_expected_centroid(const struct mh_acoustic_config *config,
+                                             const struct mh_acoustic_scene *scene);
+
 /* The centroid of a group by the weights of the nodes, and its members as two sources of all its targets. As locate_jointly. */
 enum mh_status mh_acoustic_weigh(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                                  mh_real seconds, struct mh_acoustic_fix *fix);

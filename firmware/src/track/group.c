@@ -6,7 +6,8 @@
 #define VELOCITY 0.25f      /* m/s in a target's velocity */
 #define TIME (1.0f / 16.0f) /* s in a time */
 #define TIME_MAX UINT16_MAX
-#define COUNT_MAX 15 /* of instants in a row: four bits */
+#define NEVER_ALONE INT8_MIN /* vx of a target that was found in a group */
+#define COUNT_MAX 15         /* of instants in a row: four bits */
 
 void mh_group_config_default(struct mh_group_config *config, enum mh_group_mode mode)
 {
@@ -101,7 +102,7 @@ enum mh_status mh_group_found(struct mh_group *group, uint32_t target, const str
     }
     *group = (struct mh_group){.count = count};
     for (uint8_t i = 0; i < count; i++) {
-        group->targets[i] = (struct mh_group_target){.target = target + i, .alone = TIME_MAX};
+        group->targets[i] = (struct mh_group_target){.target = target + i, .vx = NEVER_ALONE, .alone = TIME_MAX};
     }
     mh_real extent;
     *centroid = place_members(group, places, &extent);
@@ -295,6 +296,9 @@ static mh_real unlikelihood(const struct parting *parting, const uint8_t *allotm
     mh_real sum = 0;
     for (uint8_t i = 0; i < parting->group->count; i++) {
         const struct mh_group_target *target = &parting->group->targets[i];
+        if (target->vx == NEVER_ALONE) {
+            continue;
+        }
         const struct mh_vec2 kept = {(mh_real)target->vx * VELOCITY, (mh_real)target->vy * VELOCITY};
         const struct mh_vec2 now = parting->velocities[allotment[i]];
         sum += (mh_squared(now.x - kept.x) + mh_squared(now.y - kept.y)) /
@@ -381,7 +385,7 @@ enum mh_status mh_group_part(const struct mh_group *group, const struct mh_group
     do {
         bool same = true;
         for (uint8_t i = 0; i < n; i++) {
-            same = same && (allotment[i] == part) == (best[i] == part);
+            same = same && (group->targets[i].vx == NEVER_ALONE || (allotment[i] == part) == (best[i] == part));
         }
         unresolved = unresolved || (!same && unlikelihood(&parting, allotment) < doubtful);
     } while (next_permutation(allotment, n));
@@ -497,8 +501,7 @@ enum mh_status mh_group_read(struct mh_group *group, uint32_t target, const uint
             one->alone = mh_get_u16(&at);
             read.members[i].x = get_i8(&at);
             read.members[i].y = get_i8(&at);
-            valid = valid && one->vx > INT8_MIN && one->vy > INT8_MIN && read.members[i].x > INT8_MIN &&
-                    read.members[i].y > INT8_MIN;
+            valid = valid && one->vy > INT8_MIN && read.members[i].x > INT8_MIN && read.members[i].y > INT8_MIN;
         }
     }
     if (read.splits > 0) {

@@ -206,6 +206,27 @@ static void velocities_tell_who_is_who(void)
     TEST_ASSERT_TRUE(unresolved);
 }
 
+/* Two that were found together have never been told apart: their identifiers cannot have been exchanged. */
+static void who_was_never_alone_is_not_mistaken(void)
+{
+    struct mh_group group, part;
+    bool split;
+    struct mh_vec2 centroid, velocity;
+    const struct mh_vec2 places[2] = {at(60, 0), at(140, 0)};
+    mh_group_config_default(&config, MH_GROUP_MEMBERS);
+    TEST_ASSERT_EQUAL(MH_OK, mh_group_found(&group, 40, places, 2, &centroid));
+    for (int i = 0; i < 3; i++) {
+        take_two(&group, 40, &split);
+    }
+    TEST_ASSERT_TRUE(split);
+    for (uint8_t k = 0; k < 2; k++) {
+        TEST_ASSERT_EQUAL(
+            MH_OK, mh_group_part(&group, &config, at(0, 0), at(0, 10), k, &part, &centroid, &velocity, &velocity_sd));
+        TEST_ASSERT_EQUAL(40 + k, part.targets[0].target);
+        TEST_ASSERT_FALSE(part.unresolved);
+    }
+}
+
 /* One of three leaves: who it is is known, and the two that stay are a group; which of them is which need not be known. */
 static void one_of_three_leaves(void)
 {
@@ -385,7 +406,7 @@ static void corrupt_bytes(void)
     } wrong[] = {{0, 0},    {0, MH_GROUP_MAX + 1},
                  {0, 1},    {1, 0x11},
                  {13, 3}, /* the targets do not ascend */
-                 {4, 0x80}, {18, 0x80},
+                 {5, 0x80}, {18, 0x80},
                  {20, 0},   {20, 2} /* parts that cannot be */};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         uint8_t changed[sizeof bytes];
@@ -411,6 +432,7 @@ int main(void)
     RUN_TEST(splitting_takes_three_instants);
     RUN_TEST(the_extent_is_smoothed);
     RUN_TEST(velocities_tell_who_is_who);
+    RUN_TEST(who_was_never_alone_is_not_mistaken);
     RUN_TEST(one_of_three_leaves);
     RUN_TEST(four_part_as_the_nearest_velocities_say);
     RUN_TEST(a_chain_is_one_part);

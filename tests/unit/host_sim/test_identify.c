@@ -73,6 +73,7 @@ static void of_a_group_the_middle(void)
     const struct identified alone = identify_estimate(&identify, &targets, &estimate, 12);
     TEST_ASSERT_NOT_EQUAL(NOT_IDENTIFIED, alone.number);
     TEST_ASSERT_TRUE(fabs(alone.state.at.x_m - 120) < 1e-9);
+    TEST_ASSERT_EQUAL_size_t(1, identify.count); /* in the group nobody was told apart */
 }
 
 static void the_oldest_is_forgotten(void)
