@@ -22,8 +22,8 @@
  *
  * What an estimate holds: `covariance` of position and velocity (4 states); `raw` the fix; velocity at most 30 m/s between fixes, zero where it is unknown: at the first, and below 1 m/s;
  * `measurements` those used; `flags` STARTED, COASTED, REFRESHED with every fix, MIRRORED; MERGE (with `near`) and SPLIT of groups; and UNRESOLVED
- * once the target may have exchanged its identifier with another: if they were expected, or found, nearer to each other than 10 m or two and a half standard deviations of their distance, at an instant
- * or between two. It stays so: two that meet and part again sound the same whether they crossed or turned back, and nothing that comes later tells. `target`, `members`, `of`, `extent` and `mode` as estimate.h
+ * once the target may have exchanged its identifier with another: if they were expected to come, or found to have come, within 14 m of each other, at an instant or between two, or were found within two and a half
+ * standard deviations of their distance. It stays so: two that meet and part again sound the same whether they crossed or turned back, and nothing that comes later tells. `target`, `members`, `of`, `extent` and `mode` as estimate.h
  * says. After coast_s without a fix the track ends: MH_NONE, and the next step begins anew.
  *
  * A saved track (numbers as bytes.h puts them): 5 << 5, 16 if there have been two fixes, 4 x fixes left out, mode (1); time of the last fix (4); place in mm (4 + 4); velocity in 1/256 m/s (2 + 2); the

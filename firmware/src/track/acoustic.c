@@ -4,6 +4,9 @@
 
 #define GATE_PATIENCE 2
 
+/* Tracks that were found nearer to each other than so many standard deviations of their distance may have been exchanged. */
+#define DISTINCT_SDS 2.5f
+
 enum { MOTION = 4 }; /* states x, y, vx, vy */
 
 void mh_acoustic_config_default(struct mh_acoustic_config *config, mh_real sensing_range_m)
@@ -284,7 +287,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     const bool jointly =
         tracking && (scene.own.group.count > 1 || (!scene.alone && acoustic->config.separation == MH_SEPARATION_JOINT));
     const mh_real seconds = tracking ? mh_seconds_between(track->updated, time) : 0;
-    const unsigned expected = tracking ? mh_acoustic_exchanged(&scene, seconds) : 0u;
+    const unsigned expected = tracking ? mh_acoustic_exchanged(&scene, seconds, 0) : 0u;
     mh_acoustic_listen(acoustic, jointly, measurements, count, &scene);
     acoustic->others_count = 0;
 
@@ -305,7 +308,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     }
     const bool merge = acoustic->kind->approach && acoustic->config.group.mode != MH_GROUP_NONE &&
                        acoustic->kind->approach(&acoustic->config, &scene);
-    const unsigned exchanged = (expected | mh_acoustic_exchanged(&scene, seconds)) & ~merging(&scene);
+    const unsigned exchanged = (expected | mh_acoustic_exchanged(&scene, seconds, DISTINCT_SDS)) & ~merging(&scene);
     scene.own.group.unresolved = scene.own.group.unresolved || exchanged != 0;
     *track = scene.own;
     acoustic->tracking = true;

@@ -56,8 +56,10 @@ void mh_acoustic_look_around(const struct mh_acoustic *acoustic, mh_tick time, s
 void mh_acoustic_listen(const struct mh_acoustic *acoustic, bool jointly, const struct mh_measurement *measurements,
                         size_t count, struct mh_acoustic_scene *scene);
 
-/* With which of the others the own track, at an instant `seconds` after the last fix, may have exchanged its identity: bit i for others[i]. */
-uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds);
+/* With which of the others the own track, at an instant `seconds` after the last fix, may have exchanged its identity, for they were nearer to each
+ * other than MH_ACOUSTIC_DISTINCT_M, or than `sds` standard deviations of their distance: bit i for others[i]. */
+#define MH_ACOUSTIC_DISTINCT_M 14.0f
+uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds, mh_real sds);
 
 /* ---- acoustic_fix.c: where it is at one instant ---- */
 

@@ -17,10 +17,6 @@
 #define ASTRAY_SDS 3.0f
 #define LOUDEST_RANGES 0.5f
 
-/* Two tracks may have been exchanged when they were nearer to each other than so many standard deviations of their distance, or so many m. */
-#define DISTINCT_SDS 2.5f
-#define DISTINCT_M 10.0f
-
 static mh_real distance(struct mh_vec2 a, struct mh_vec2 b)
 {
     return mh_sqrt(mh_squared(a.x - b.x) + mh_squared(a.y - b.y));
@@ -245,7 +241,7 @@ void mh_acoustic_listen(const struct mh_acoustic *acoustic, bool jointly, const 
     }
 }
 
-uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds)
+uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds, mh_real sds)
 {
     uint16_t exchanged = 0;
     const struct mh_vec2 position = mh_acoustic_position(&scene->own), velocity = mh_acoustic_velocity(&scene->own);
@@ -261,7 +257,7 @@ uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real se
         const mh_real apart =
             mh_sqrt(x * x + y * y) - mh_group_extent(&scene->own.group) - mh_group_extent(&other->group);
         const mh_real variance = 0.5f * (covariance.xx + covariance.yy + other->covariance.xx + other->covariance.yy);
-        if (apart < mh_max(DISTINCT_M, DISTINCT_SDS * mh_sqrt(variance))) {
+        if (apart < mh_max(MH_ACOUSTIC_DISTINCT_M, sds * mh_sqrt(variance))) {
             exchanged = (uint16_t)(exchanged | 1u << i);
         }
     }
