@@ -43,7 +43,7 @@ const struct scenario_key scenario_keys[] = {
     {"target.velocity_sd_mps", KEY_NUMBER, AT(target.velocity_sd_mps), "0.2", 1e-3, 1e3, NULL, "white_acceleration: the same of its velocity"},
     {"target.acceleration_x_mps2", KEY_NUMBER, AT(target.acceleration_x_mps2), "0.01", 1e-5, 100, NULL, "white_acceleration: standard deviation of its acceleration along x, drawn anew for each sampling interval"},
     {"target.acceleration_y_mps2", KEY_NUMBER, AT(target.acceleration_y_mps2), "0.01", 1e-5, 100, NULL, "the same along y"},
-    {"target.count", KEY_COUNT, AT(target.count), "1", 1, TARGETS_MAX, NULL, "parallel and what follows it: targets"},
+    {"target.count", KEY_COUNT, AT(target.count), "1", 1, TARGETS_MAX, NULL, "parallel and the paths named after it: so many targets"},
     {"target.spacing_m", KEY_NUMBER, AT(target.spacing_m), "60", 0, 1e4, NULL, "parallel, turn: between neighbours; bounce, lanes: likewise, where they are nearest; ring: its radius"},
     {"target.apart_m", KEY_NUMBER, AT(target.apart_m), "80", 0, 1e4, NULL, "lanes: between neighbours before they draw near and after"},
     {"target.turn_deg", KEY_NUMBER, AT(target.turn_deg), "90", -180, 180, NULL, "turn: to the left by this angle; crossing, bounce: between the two ways"},

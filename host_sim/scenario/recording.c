@@ -518,7 +518,7 @@ int recording_load(const char *nodes_path, const char *readings_path, const char
 static int two_targets(const char *name, size_t row, int first, int other, char *error, size_t error_size)
 {
     return fail(error, error_size,
-                "%s: target: expected one, which is all that trackers follow, found %d and %d in row %zu", name, first,
+                "%s: target: expected one, which is all that a replay follows, found %d and %d in row %zu", name, first,
                 other, row + 1);
 }
 
