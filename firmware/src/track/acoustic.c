@@ -208,8 +208,13 @@ static enum mh_status locate(const struct mh_acoustic *acoustic, struct mh_acous
                              mh_real seconds, struct mh_acoustic_fix *fix)
 {
     const struct mh_acoustic_config *config = &acoustic->config;
+    if (jointly && scene->own_count == 0) {
+        return MH_NONE;
+    }
     if (jointly) {
-        return scene->own_count > 0 ? acoustic->kind->locate_jointly(config, scene, seconds, fix) : MH_NONE;
+        return scene->own.group.count > 1 && config->group.mode == MH_GROUP_WEIGHTS
+                   ? acoustic->kind->weigh(config, scene, seconds, fix)
+                   : acoustic->kind->locate_jointly(config, scene, seconds, fix);
     }
     if (scene->heard_count < 2) {
         return MH_NONE;

@@ -222,9 +222,6 @@ static enum mh_status locate_jointly(const struct mh_acoustic_config *config, st
     struct mh_source_fix fixes[MH_SOURCES_MAX];
     uint8_t first[MH_TARGETS_MAX] = {0}; /* source of each; 0, an own one: it is not in the fit */
     struct mh_group *group = &scene->own.group;
-    if (group->count > 1 && config->group.mode == MH_GROUP_WEIGHTS) {
-        return mh_acoustic_weigh(config, scene, seconds, fix);
-    }
     const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     const struct mh_vec2 expected =
         group->count > 1 ? mh_acoustic_expected_centroid(config, scene) : mh_acoustic_position(&scene->own);
@@ -286,7 +283,11 @@ static bool approach(const struct mh_acoustic_config *config, struct mh_acoustic
 /* what a build of these capacities never calls is not linked */
 #define TOGETHER (MH_TARGETS_MAX > 1 || MH_GROUP_MAX > 1)
 #define GROUPS (MH_GROUP_MAX > 1)
-const struct mh_acoustic_kind mh_acoustic_kind_gn = {locate_gn, reconsider_gn, TOGETHER ? locate_jointly : NULL,
-                                                     GROUPS ? mh_acoustic_find_group : NULL, GROUPS ? approach : NULL};
-const struct mh_acoustic_kind mh_acoustic_kind_dm = {locate_dm, NULL, NULL, NULL, NULL};
-const struct mh_acoustic_kind mh_acoustic_kind_ml = {locate_ml, NULL, NULL, NULL, NULL};
+const struct mh_acoustic_kind mh_acoustic_kind_gn = {locate_gn,
+                                                     reconsider_gn,
+                                                     TOGETHER ? locate_jointly : NULL,
+                                                     GROUPS ? mh_acoustic_weigh : NULL,
+                                                     GROUPS ? mh_acoustic_find_group : NULL,
+                                                     GROUPS ? approach : NULL};
+const struct mh_acoustic_kind mh_acoustic_kind_dm = {.locate = locate_dm};
+const struct mh_acoustic_kind mh_acoustic_kind_ml = {.locate = locate_ml};

@@ -79,6 +79,9 @@ struct mh_acoustic_kind {
     /* Together with all that are near, `seconds` after the last fix; a group's members. NULL: it cannot. */
     enum mh_status (*locate_jointly)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                                      mh_real seconds, struct mh_acoustic_fix *fix);
+    /* The same of a group by weights (mh_acoustic_weigh). With approach. */
+    enum mh_status (*weigh)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene, mh_real seconds,
+                            struct mh_acoustic_fix *fix);
     /* mh_acoustic_find_group. With approach. */
     void (*find_group)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                        struct mh_acoustic_fix *fix);
