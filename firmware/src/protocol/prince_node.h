@@ -8,6 +8,9 @@
 #define MH_PRINCE_SECOND 1000u
 #define MH_PRINCE_ANSWERS 2 /* that a fix takes at least, beside the locator's own energy */
 
+#define MH_PRINCE_SHARE                                                                                                \
+    0.25f /* of a target in what a node hears, by where all are expected: with less it is another that is heard */
+
 /* ---- prince.c ---- */
 
 void mh_prince_set(struct mh_prince_row *row, enum mh_prince_timer timer, mh_tick time);

@@ -10,8 +10,8 @@
 #define RANKS 8          /* of a window: between answers of nodes by rank */
 #define SLOTS_SHARE                                                                                                    \
     0.85f /* of a window, over which answers spread by energy: evenly, since the square of the distance is 1 / energy */
-#define SLOT_SPREAD 8    /* ticks by which those of equal energy differ */
-#define LEAST_SHARE 0.6f /* of a target in the energy of an answer: less tells nothing of it */
+#define SLOT_SPREAD 8     /* ticks by which those of equal energy differ */
+#define LEAST_ENERGY 0.6f /* of a target in an answer: less tells nothing of it */
 
 /* ---- answers ---- */
 
@@ -318,9 +318,11 @@ static mh_tick reply_wait(struct mh_prince *p, const struct mh_prince_row *row, 
 
 void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
 {
-    const mh_real energy = mh_prince_energy(p, row, NULL, NULL);
-    if (mh_q20_to_real(p->value) < 1 || energy < LEAST_SHARE || row->state == MH_PRINCE_LOCATE ||
-        (!row->fixed && !mh_prince_hears(p, row))) {
+    mh_real share;
+    const mh_real energy = mh_prince_energy(p, row, &share, NULL);
+    const bool heard = row->fixed ? mh_q20_to_real(p->value) >= 1 && energy >= LEAST_ENERGY && share >= MH_PRINCE_SHARE
+                                  : mh_prince_hears(p, row);
+    if (!heard || row->state == MH_PRINCE_LOCATE) {
         return;
     }
     row->value = p->value;

@@ -149,16 +149,22 @@ static bool is_in_time(const struct mh_prince *p, const struct mh_prince_row *ro
 bool mh_prince_hears(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     uint8_t others;
-    const mh_real energy = mh_q20_to_real(p->value), own = mh_prince_energy(p, row, NULL, &others);
+    mh_real share;
+    const mh_real energy = mh_q20_to_real(p->value), own = mh_prince_energy(p, row, &share, &others);
     if (!row->fixed) {
         return is_unexplained(p);
     }
-    const bool unforeseen = row->as == MH_NODE_COMPETITOR || row->as == MH_NODE_OUTER;
     if (energy < 1 || others == 0) {
         return energy >= 1;
     }
-    return unforeseen ? energy > EXPLAINED * explained_by_others(p, row) && (row->as == MH_NODE_COMPETITOR || own >= 1)
-                      : own >= 1 && is_in_time(p, row);
+    switch (row->as) {
+    case MH_NODE_COMPETITOR:
+        return share >= MH_PRINCE_SHARE && energy > EXPLAINED * explained_by_others(p, row);
+    case MH_NODE_OUTER:
+        return own >= 1 && energy > EXPLAINED * explained_by_others(p, row);
+    default:
+        return own >= 1 && is_in_time(p, row);
+    }
 }
 
 /* Watch for at least `ticks` from now. */
