@@ -1,4 +1,4 @@
-/* make_seeds WIRE_FOLDER MOTE_FOLDER TRACK_FOLDER FUSION_FOLDER FIXED_FOLDER: good inputs of fuzz_wire.c, fuzz_mote.c, fuzz_track.c, fuzz_fusion.c and fuzz_fixed.c, for the fuzzer
+/* make_seeds WIRE_FOLDER MOTE_FOLDER TRACK_FOLDER FUSION_FOLDER FIXED_FOLDER PRINCE_FOLDER: good inputs of fuzz_wire.c, fuzz_mote.c, fuzz_track.c, fuzz_fusion.c, fuzz_fixed.c and fuzz_prince.c, for the fuzzer
  * to start from. */
 #include "motehound/acoustic.h"
 #include "motehound/centroid.h"
@@ -254,9 +254,28 @@ static int save_fixed(const char *folder, const char *name, uint8_t choice)
     return save(folder, name, input, length);
 }
 
+/* A mote that looks for targets, is told of some, hears them, is answered, and rings when it wants. */
+static int save_prince(const char *folder, const char *name, uint8_t choice)
+{
+    uint8_t input[900] = {choice};
+    uint32_t random = choice;
+    size_t length = 1;
+    for (uint8_t step = 0; length + 80 < sizeof input; step++) {
+        static const uint8_t kinds[] = {4, 7, 7, 1, 7, 7, 2, 7, 3, 2, 7, 5, 2, 7};
+        static const uint8_t operands[] = {0, 70, 9, 9, 3, 1, 2, 2};
+        const uint8_t kind = kinds[step % sizeof kinds];
+        input[length++] = kind;
+        for (int i = 0; i < operands[kind]; i++) {
+            random = random * 1664525u + 1013904223u;
+            input[length++] = (uint8_t)(random >> 24);
+        }
+    }
+    return save(folder, name, input, length);
+}
+
 int main(int argc, char **argv)
 {
-    if (argc != 6) {
+    if (argc != 7) {
         return 2;
     }
     const struct mh_message beacon = {.kind = MH_MESSAGE_BEACON,
@@ -421,6 +440,11 @@ int main(int argc, char **argv)
         char name[20];
         snprintf(name, sizeof name, "fixed%d", choice);
         failed = failed || save_fixed(argv[5], name, (uint8_t)choice);
+    }
+    for (int choice = 0; choice < 128; choice++) {
+        char name[20];
+        snprintf(name, sizeof name, "prince%d", choice);
+        failed = failed || save_prince(argv[6], name, (uint8_t)choice);
     }
     return failed ? 1 : 0;
 }

@@ -972,6 +972,92 @@ static void a_target_that_nobody_finds_again_is_forgotten(void)
     TEST_ASSERT_EQUAL(MH_PRINCE_FREE, state_of(TARGET));
 }
 
+/* ---- the table ---- */
+
+static void who_sleeps_wakes_when_the_target_turns_or_fails(void)
+{
+    struct mh_message message = awake(5, HEAD, NEXT);
+    message.as.awake.y_mm = 90000;
+    hear(&message);
+    TEST_ASSERT_EQUAL(MH_PRINCE_SLEEP, state_of(TARGET));
+    tell_the(locate(6, OTHER, MH_LOCATE_PRINCE)); /* not for who sleeps */
+    TEST_ASSERT_EQUAL(0, saw.sensed);
+    tell_the(awake(6, OTHER, NEXT));
+    TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(TARGET));
+    message.as.awake.generation = 7;
+    hear(&message);
+    TEST_ASSERT_EQUAL(MH_PRINCE_SLEEP, state_of(TARGET));
+    tell_the(failed(7, OTHER));
+    TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(TARGET));
+}
+
+#if MH_TARGETS_MAX == 4
+/* Asleep: nearest to this node after so many seconds. */
+static void hear_of(uint32_t target, mh_real seconds)
+{
+    struct mh_message message = awake(5, HEAD, NEXT);
+    message.as.awake.target = (int32_t)target;
+    message.as.awake.x_mm = 40000 - (int32_t)(seconds * 10000);
+    message.as.awake.y_mm = 90000;
+    hear(&message);
+}
+
+static void whose_target_is_out_of_range_first_gives_way(void)
+{
+    tell_the(awake(5, HEAD, NEXT)); /* watched until 8 s */
+    hear_of(2, 9);
+    hear_of(3, 7);
+    hear_of(4, 8);
+    hear_of(5, 10);
+    TEST_ASSERT_EQUAL(MH_PRINCE_FREE, state_of(3));
+    TEST_ASSERT_EQUAL(MH_PRINCE_SLEEP, state_of(5));
+    TEST_ASSERT_EQUAL(1, state.counters.evicted);
+    struct mh_message message = awake(5, HEAD, NEXT);
+    for (uint32_t target = 6; target < 12; target++) {
+        message.as.awake.target = (int32_t)target;
+        message.as.awake.x_mm += 1000;
+        hear(&message);
+    }
+    TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(11));
+    TEST_ASSERT_EQUAL(7, state.counters.evicted);
+}
+
+static void heads_never_give_way(void)
+{
+    become_head();
+    for (uint32_t target = 2; target < 9; target++) {
+        hear_of(target, (mh_real)target);
+    }
+    TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET));
+    TEST_ASSERT_EQUAL(MH_PRINCE_SLEEP, state_of(8));
+    TEST_ASSERT_EQUAL(4, state.counters.evicted);
+}
+
+/* This node is prince of one target, but another one is nearer. */
+static void what_is_anothers_share_moves_nobody(void)
+{
+    struct mh_message message = awake(5, HEAD, NEXT);
+    message.as.awake.target = 2;
+    message.as.awake.y_mm = 20000;
+    message.as.awake.x_mm = 40000;
+    message.as.awake.vx_cmps = 100;
+    hear(&message);
+    message = awake(5, HEAD, NODE);
+    message.as.awake.y_mm = -20000; /* 45 m off; the other 20 m: a sixth of the energy is its */
+    hear(&message);
+    saw.energy = 5;
+    run_until(saw.time + 500);
+    TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_LOCATE]);
+    saw.energy = 8;
+    run_until(saw.time + 500);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_LOCATE]);
+    TEST_ASSERT_EQUAL_INT32(TARGET, saw.last[MH_MESSAGE_LOCATE].as.locate.target);
+    answer();
+    run_until(saw.time + 300);
+    TEST_ASSERT_EQUAL(1, saw.others); /* the tracker is told of it */
+}
+#endif
+
 /* ---- all else ---- */
 
 static void before_the_time_is_known_nothing_is_done(void)
@@ -1218,6 +1304,12 @@ int main(void)
     RUN_TEST(idle_nodes_look_for_targets_once_in_a_while);
     RUN_TEST(what_is_explained_is_not_new);
     RUN_TEST(a_target_that_nobody_finds_again_is_forgotten);
+    RUN_TEST(who_sleeps_wakes_when_the_target_turns_or_fails);
+#if MH_TARGETS_MAX == 4
+    RUN_TEST(whose_target_is_out_of_range_first_gives_way);
+    RUN_TEST(heads_never_give_way);
+    RUN_TEST(what_is_anothers_share_moves_nobody);
+#endif
     RUN_TEST(before_the_time_is_known_nothing_is_done);
     RUN_TEST(what_is_of_no_time_about_now_is_refused);
     RUN_TEST(radios_without_watching_rows_sleep_but_in_windows);
