@@ -175,7 +175,7 @@ HEADLINES_OF_CLUSTERS = (
 
 HEADLINES_OF_TARGETS = (
     ("position_error_m", "mean error", "m"),
-    ("rmse_over_crlb", "RMSE over its bound", ""),
+    ("rmse_over_crlb", "RMSE over the bound of one fix", ""),
     ("success", "runs that kept all targets apart", "%"),
     ("track_lost", "runs that lost a target", "%"),
     ("identity_swaps", "identifiers exchanged a run", ""),
