@@ -23,7 +23,8 @@
  * What goes wrong, each guard in `guards` by itself:
  *   - The prince is dead, asleep, or has never heard that it is prince: REGENT, and WATCHDOG: a head of which nobody has taken over by 2.5 s after the prince was due, or when the target may have left its
  *     radio range, says fail_t.
- *   - Answers are lost: RETRY. Nobody hears fail_t who hears the target: RELAY, who wins and gets no answers says fail_t again.
+ *   - Answers are lost: RETRY. Nobody hears fail_t who hears the target: RELAY, who wins and gets no answers says fail_t again; and who hears
+ *     the target when its time to watch is over watches on, as competitor.
  *   - The target turns: EXCEPTION.
  *   - An awake_t is lost: whoever has one with a newer generation says it again to whoever asks with an older one.
  *   - Two locate at once: the one who hears of the other and was later, or at the same time has the higher identifier, gives up. Two heads of one generation: likewise, by their fixes.

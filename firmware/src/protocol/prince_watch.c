@@ -6,6 +6,7 @@
 #define AFTER_OUT 3000      /* ticks for which a watcher stays when the target should be out of range */
 #define LEAST_WATCH 2000    /* ticks, of a watcher */
 #define UNKNOWN_WATCH 15000 /* ... where it is not known how the target moves */
+#define LINGERING 2000      /* ticks for which a watcher stays at least that hears the target when its time is over */
 #define LONGEST_WATCH 300000
 #define KEPT 20000        /* ticks for which a row is kept after that */
 #define REGENT_WAIT 1000  /* ticks after the prince is due ... */
@@ -289,6 +290,11 @@ void mh_prince_watch(struct mh_prince *p)
 void mh_prince_quiet(struct mh_prince *p, struct mh_prince_row *row)
 {
     if (row->state != MH_PRINCE_WATCH && row->state != MH_PRINCE_HEAD) {
+        return;
+    }
+    if (row->state == MH_PRINCE_WATCH && (p->config->guards & MH_PRINCE_RELAY) && row->fixed && p->heard &&
+        mh_prince_hears(p, row)) { /* perhaps nobody else knows of it */
+        mh_prince_become_competitor(p, row, LINGERING);
         return;
     }
     p->counters.lost += row->fixed && row->head == p->node->id;

@@ -719,6 +719,7 @@ static void a_locator_gives_up_when_a_new_head_speaks(void)
 static void a_head_leaves_when_its_successor_says_so(void)
 {
     become_head();
+    saw.energy = 0;
     tell_the(succeed(7, OTHER, NODE));
     TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(TARGET));
     TEST_ASSERT_TRUE(row_of(TARGET)->is_passive);
@@ -1097,6 +1098,7 @@ static void radios_without_watching_rows_sleep_but_in_windows(void)
     TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_AWAKE]);
     run_until(saw.time + 250);
     TEST_ASSERT_EQUAL(2, saw.of_kind[MH_MESSAGE_AWAKE]);
+    saw.energy = 0;
     tell_the(succeed(7, OTHER, NODE));
     run_until(saw.time + 3000);
     TEST_ASSERT_FALSE(saw.listens);

@@ -393,6 +393,50 @@ static void who_contends_for_what_has_been_found_is_told(void)
     TEST_ASSERT_EQUAL(2, saw.of_kind[MH_MESSAGE_AWAKE]);
 }
 
+/* The target, 20 m/s fast, should be out of range after 4 s, and 3 s later all is over. */
+static void pass_by(void)
+{
+    struct mh_message fast = awake(5, HEAD);
+    fast.as.awake.vx_cmps = 2000;
+    fast.as.awake.prince = OTHER;
+    fast.as.awake.enters_cs = 3000;
+    hear(fast);
+    TEST_ASSERT_EQUAL(MH_NODE_INNER, row()->as);
+}
+
+static void who_hears_the_target_when_its_time_is_over_watches_on(void)
+{
+    come_up(MH_PRINCE_NAMED, true);
+    pass_by();
+    const mh_tick found = saw.time;
+    run_until(found + 6500);
+    saw.energy = 2;
+    run_until(found + 7100);
+    TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, row()->state);
+    TEST_ASSERT_EQUAL(MH_NODE_COMPETITOR, row()->as);
+    run_until(found + 8000);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_COMPETE]);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_LOCATE]);
+    saw.energy = 0;
+    run_until(found + 40000);
+    TEST_ASSERT_NULL(row());
+}
+
+static void who_does_not_or_is_not_guarded_sleeps(void)
+{
+    for (uint8_t guarded = 0; guarded < 2; guarded++) {
+        come_up(MH_PRINCE_NAMED, guarded);
+        pass_by();
+        const mh_tick found = saw.time;
+        run_until(found + 6500);
+        saw.energy = guarded ? 0 : 2;
+        run_until(found + 6900);
+        TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, row()->state);
+        run_until(found + 7100);
+        TEST_ASSERT_EQUAL(MH_PRINCE_SLEEP, row()->state);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -407,5 +451,7 @@ int main(void)
     RUN_TEST(who_suppresses_for_an_old_generation_does_not);
     RUN_TEST(the_old_head_releases_them);
     RUN_TEST(who_contends_for_what_has_been_found_is_told);
+    RUN_TEST(who_hears_the_target_when_its_time_is_over_watches_on);
+    RUN_TEST(who_does_not_or_is_not_guarded_sleeps);
     port_exit(UNITY_END() > 0);
 }
