@@ -30,8 +30,8 @@
  * covariance's factors U and D (kalman.h), the upper halves of the numbers (10 x 2); the last three speeds in 1/4 m/s (3); the group (group.h). Of a single target 42 bytes, 46 while it draws near
  * to another; MH_ACOUSTIC_SAVED_MAX at most.
  *
- * Groups (config.group; group.h), `acoustic` only: a track that begins, with nobody near, where one source explains the energies badly begins as a group of as many as source_count.h finds, up to
- * MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
+ * Groups (config.group; group.h), `acoustic` only: a track that begins, with nobody near, where one source explains the energies badly begins as a group of as few as explain them, no more than
+ * source_count.h finds and MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
  * part decides.
  *
  * among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. MH_ERR_ARGUMENT: a group is not renamed. Cost: docs/costs.md. */

@@ -3,6 +3,7 @@
 
 /* One source leaves residuals of this mean square, in their variances, once in 250 times; several equal ones always. */
 #define MISFIT_OF_ONE 3.0f
+#define MISFIT_OF_SEVERAL 2.0f /* as many as there are seldom leave more */
 
 /* The centroid by weights (Han's group of many): of the energy, up to a limit, this power */
 #define WEIGHT_MOST 16.0f
@@ -36,29 +37,48 @@ static struct mh_sym2 around(mh_real sd_m)
 
 /* ---- a new group ---- */
 
+/* So many sources, at most `count`, where they fit best -> places, *misfit_of. Returns how many they are; 0: none can be found. */
+static uint8_t place_sources(const struct mh_acoustic_config *config, const struct mh_acoustic_scene *scene,
+                             uint8_t count, struct mh_vec2 *places, mh_real *misfit_of)
+{
+    struct mh_source sources[MH_SOURCES_MAX];
+    struct mh_source_fix fixes[MH_SOURCES_MAX];
+    uint8_t found;
+    if (mh_source_count(&config->sound, scene->heard, scene->heard_count, count, places, &found) != MH_OK) {
+        return 0;
+    }
+    for (uint8_t k = 0; k < found; k++) {
+        const struct mh_source source = {places[k], around(config->group.member_sd_m), 0};
+        sources[k] = source;
+    }
+    if (mh_joint_sources(&config->sound, scene->heard, scene->heard_count, sources, NULL, found, fixes) == MH_OK) {
+        for (uint8_t k = 0; k < found; k++) {
+            places[k] = fixes[k].position;
+        }
+    }
+    *misfit_of = misfit(&config->sound, scene->heard, scene->heard_count, sources, places, found);
+    return found;
+}
+
 void mh_acoustic_find_group(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                             struct mh_acoustic_fix *fix)
 {
     const struct mh_source one = {fix->position, fix->covariance, 0};
     struct mh_vec2 places[MH_SOURCES_MAX];
-    uint8_t count;
-    if (misfit(&config->sound, scene->heard, scene->heard_count, &one, &fix->position, 1) <= MISFIT_OF_ONE ||
-        mh_source_count(&config->sound, scene->heard, scene->heard_count, MH_GROUP_MAX, places, &count) != MH_OK ||
-        count < 2) {
+    mh_real off = misfit(&config->sound, scene->heard, scene->heard_count, &one, &fix->position, 1);
+    uint8_t count = 1;
+    if (off <= MISFIT_OF_ONE) {
         return;
     }
-    struct mh_source sources[MH_SOURCES_MAX];
-    struct mh_source_fix fixes[MH_SOURCES_MAX];
-    for (uint8_t k = 0; k < count; k++) {
-        const struct mh_source source = {places[k], around(config->group.member_sd_m), 0};
-        sources[k] = source;
-    }
-    if (mh_joint_sources(&config->sound, scene->heard, scene->heard_count, sources, NULL, count, fixes) == MH_OK) {
-        for (uint8_t k = 0; k < count; k++) {
-            places[k] = fixes[k].position;
+    /* as few as explain what is heard, and no more than there seem to be */
+    for (uint8_t most = 2; most <= MH_GROUP_MAX && off > MISFIT_OF_SEVERAL; most++) {
+        count = place_sources(config, scene, most, places, &off);
+        if (count < most) {
+            break;
         }
     }
-    if (mh_group_found(&scene->own.group, scene->own.group.targets[0].target, places, count, &fix->position) == MH_OK) {
+    if (count > 1 &&
+        mh_group_found(&scene->own.group, scene->own.group.targets[0].target, places, count, &fix->position) == MH_OK) {
         fix->covariance = around(config->group.fix_sd_m);
         scene->own.mode = MH_TARGET_GROUP;
     }
