@@ -1,4 +1,4 @@
-"""python -m motehound_tools report | sweep | results | zhou | xu | zhang | metec | faults | picture | bound | export | view"""
+"""python -m motehound_tools report | sweep | results | zhou | xu | zhang | han | metec | faults | picture | bound | export | view"""
 
 from __future__ import annotations
 
@@ -52,6 +52,11 @@ def parser() -> argparse.ArgumentParser:
     zhang.add_argument("--out", type=Path, default=Path("out/zhang"), help="where the sweeps go; finished runs are kept")
     zhang.add_argument("--markdown", type=Path, default=Path("docs/zhang.md"), help="the page to write")
 
+    han = commands.add_parser("han", help="run the experiments han_* and write the page about them")
+    han.add_argument("--seeds", metavar="SEEDS", help="such as 0-9, instead of the experiments' own")
+    han.add_argument("--out", type=Path, default=Path("out/han"), help="where the sweeps go; finished runs are kept")
+    han.add_argument("--markdown", type=Path, default=Path("docs/han.md"), help="the page to write")
+
     metec = commands.add_parser("metec", help="replay the real leaks and write the page about them")
     metec.add_argument("data", type=Path, metavar="FOLDER_OF_THE_RECORDING")
     metec.add_argument("--out", type=Path, default=Path("out/metec"), help="where the recordings and replays go")
@@ -83,7 +88,7 @@ def parser() -> argparse.ArgumentParser:
     shown.add_argument("--bus", metavar="URL", help="such as udpm://239.255.76.67:7667?ttl=0")
     view.add_argument("--port", type=int, default=5006, help="0: any that is free (%(default)s)")
 
-    for one in (sweep, results, zhou, xu, zhang, metec, faults, picture):
+    for one in (sweep, results, zhou, xu, zhang, han, metec, faults, picture):
         one.add_argument("--motehound", help="the program (else $MOTEHOUND, build/host, PATH)")
     return top
 
@@ -123,6 +128,11 @@ def perform(arguments: argparse.Namespace) -> None:
         from . import zhang
 
         zhang.write(arguments.motehound, arguments.out, arguments.markdown, arguments.seeds)
+        print(arguments.markdown)
+    elif arguments.command == "han":
+        from . import han
+
+        han.write(arguments.motehound, arguments.out, arguments.markdown, arguments.seeds)
         print(arguments.markdown)
     elif arguments.command == "metec":
         from . import command, metec
