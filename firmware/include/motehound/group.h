@@ -42,7 +42,7 @@ struct mh_group_config {
     mh_real fix_sd_m; /* of a centroid found, 0.1 to 100, nominal 2.5 */
     mh_real extent_memory; /* share of the extent that stays at an instant, 0 to 0.99, nominal 0.6 */
     mh_real
-        turn_sd_mps; /* a target's velocity changes by this much in 1 s, and with the square root of time, as the parts are told apart: 0.01 to 100, nominal 0.7 */
+        turn_sd_mps; /* a target's velocity changes by this much in 1 s, and with the square root of time, as the parts are told apart: 0.01 to 100, nominal 4: it may turn back within ten seconds */
     mh_real
         odds; /* UNRESOLVED where the second best allotment is not this many times less likely, 1 to 1e6, nominal 20 */
 };

@@ -20,7 +20,7 @@ void mh_group_config_default(struct mh_group_config *config, enum mh_group_mode 
                                        .member_sd_m = 12.0f,
                                        .fix_sd_m = 2.5f,
                                        .extent_memory = 0.6f,
-                                       .turn_sd_mps = 2.0f,
+                                       .turn_sd_mps = 4.0f,
                                        .odds = 20.0f};
 }
 

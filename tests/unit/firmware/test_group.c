@@ -164,6 +164,7 @@ static void part_two(mh_real seconds, struct mh_vec2 left, struct mh_vec2 right,
     bool split;
     struct mh_vec2 centroid, velocity;
     mh_group_config_default(&config, MH_GROUP_MEMBERS);
+    config.turn_sd_mps = 2;
     join_two(&group, 9, left, right);
     const struct mh_vec2 together[2] = {at(-9, 0), at(9, 0)};
     TEST_ASSERT_EQUAL(MH_OK, mh_group_take(&group, &config, seconds - 6, together, &centroid, &split));
@@ -234,6 +235,7 @@ static void one_of_three_leaves(void)
     bool split;
     struct mh_vec2 centroid = at(0, 0), velocity = at(10, 0);
     mh_group_config_default(&config, MH_GROUP_MEMBERS);
+    config.turn_sd_mps = 2;
     join_two(&group, 8, at(10, 0), at(10, 0));
     mh_group_single(&third, 4);
     TEST_ASSERT_EQUAL(MH_OK, mh_group_join(&group, &centroid, &velocity, &third, at(0, 15), at(10, -12)));
