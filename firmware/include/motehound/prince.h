@@ -153,7 +153,12 @@ enum mh_prince_act {
 };
 
 /* What a sample is wanted for, in mh_prince_row.wants. */
-enum { MH_PRINCE_WANTS_QUERY = 1, MH_PRINCE_WANTS_REPLY = 2, MH_PRINCE_WANTS_CONTEND = 4 };
+enum {
+    MH_PRINCE_WANTS_QUERY = 1,
+    MH_PRINCE_WANTS_REPLY = 2,
+    MH_PRINCE_WANTS_CONTEND = 4,
+    MH_PRINCE_WANTS_OWN = 8 /* the locator's own, when the others sample */
+};
 
 /* A target as one node knows it. */
 struct mh_prince_row {
@@ -185,6 +190,8 @@ struct mh_prince_row {
     uint8_t kind;                  /* enum mh_locate, of what it has in mind, or has asked */
     uint8_t announces;             /* enum mh_message_kind */
     uint8_t wants;                 /* MH_PRINCE_WANTS_* */
+    mh_tick localised;             /* locator: the time that its answers are of */
+    uint8_t ahead; /* locator: frames whose fate is told before that of its locate_t, and it; 0: it is out */
 
     /* a query heard, to be answered; a query sent: asker is this node */
     mh_node_id asker;
@@ -224,6 +231,7 @@ struct mh_prince {
     bool heard;        /* value holds, of the time sampled */
     mh_tick sampled;
     mh_q20 value;
+    uint8_t on_way; /* frames sent whose fate has not been told */
     uint8_t reply_count;
     struct mh_measurement replies[MH_PRINCE_REPLIES_MAX]; /* by row, which `target` says */
     struct mh_prince_row rows[MH_TARGETS_MAX];

@@ -73,6 +73,7 @@ bool mh_prince_is_first(mh_tick a_time, mh_node_id a_id, mh_tick b_time, mh_node
 
 void mh_prince_send(struct mh_prince *p, const struct mh_message *message)
 {
+    p->on_way = (uint8_t)(p->on_way + (p->on_way < UINT8_MAX));
     p->node->port->send(p->node->context, MH_BROADCAST, message);
 }
 
@@ -160,6 +161,9 @@ static void serve(struct mh_prince *p)
         }
         if (wants & MH_PRINCE_WANTS_CONTEND) {
             mh_prince_contend(p, row);
+        }
+        if (wants & MH_PRINCE_WANTS_OWN) {
+            mh_prince_take_own(p, row);
         }
     }
 }
@@ -571,6 +575,24 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     return MH_OK;
 }
 
+/* The locator samples when its locate_t is out, as those do who hear it. */
+static void sent(void *state, mh_tick now, enum mh_sent outcome)
+{
+    struct mh_prince *p = state;
+    (void)outcome;
+    p->on_way = (uint8_t)(p->on_way - (p->on_way > 0));
+    if (!comes(p, now)) {
+        return;
+    }
+    for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
+        struct mh_prince_row *row = &p->rows[i];
+        if (row->state == MH_PRINCE_LOCATE && row->ahead > 0 && --row->ahead == 0) {
+            mh_prince_sample(p, row, MH_PRINCE_WANTS_OWN);
+        }
+    }
+    arm(p);
+}
+
 static void count(const void *state, struct mh_protocol_counters *counters)
 {
     const struct mh_prince *p = state;
@@ -594,6 +616,7 @@ const struct mh_protocol mh_protocol_prince = {
     .init = init,
     .start = start,
     .message = message,
+    .sent = sent,
     .timer = timer,
     .publish = publish,
     .time_jumped = time_jumped,

@@ -104,6 +104,7 @@ void mh_prince_ask(struct mh_prince *p, struct mh_prince_row *row, enum mh_locat
 void mh_prince_name(struct mh_prince *p, struct mh_prince_row *row);
 
 /* The samples that these wanted are there: p->value, of p->sampled. */
+void mh_prince_take_own(struct mh_prince *p, struct mh_prince_row *row);
 void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row);
 void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row);
 

@@ -29,7 +29,7 @@ void mh_prince_collect(struct mh_prince *p, const struct mh_prince_row *row, mh_
 {
     const uint8_t number = mh_prince_number(p, row);
     const struct mh_measurement measurement = {
-        .node = id, .place = *place, .time = row->asked, .value = value, .target = number};
+        .node = id, .place = *place, .time = row->localised, .value = value, .target = number};
     const uint8_t begin = first_of(p, number), end = first_of(p, (uint8_t)(number + 1));
     uint8_t weakest = begin;
     for (uint8_t i = begin; i < end; i++) {
@@ -90,11 +90,11 @@ bool mh_prince_localise(struct mh_prince *p, struct mh_prince_row *row)
     uint8_t bytes[MH_PRINCE_TRACK_BYTES];
     size_t length;
     const struct mh_prince_port *port = p->config->port;
-    enum mh_status status = port->localise(p->node->context, &own, others, count, row->asked, &p->replies[begin],
+    enum mh_status status = port->localise(p->node->context, &own, others, count, row->localised, &p->replies[begin],
                                            (size_t)(end - begin), &estimate, bytes, &length);
     if (status == MH_ERR_CORRUPT) { /* what somebody said is no track: begin anew */
         own.length = 0;
-        status = port->localise(p->node->context, &own, others, 0, row->asked, &p->replies[begin],
+        status = port->localise(p->node->context, &own, others, 0, row->localised, &p->replies[begin],
                                 (size_t)(end - begin), &estimate, bytes, &length);
     }
     for (uint8_t i = begin; i < end; i++) {
@@ -107,6 +107,7 @@ bool mh_prince_localise(struct mh_prince *p, struct mh_prince_row *row)
     memset(row->bytes, 0, sizeof row->bytes);
     memcpy(row->bytes, bytes, length);
     row->length = row->gathered = (uint8_t)length;
+    row->asked = row->localised;
     mh_prince_lead(p, row, &estimate);
     return true;
 }
@@ -155,6 +156,7 @@ void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row)
     row->state = MH_PRINCE_LOCATE;
     row->asker = p->node->id;
     row->asked = p->sampled;
+    row->localised = p->sampled;
     row->asked_for = (uint16_t)(row->generation + 1u);
     row->queried = p->time;
     mh_prince_clear(row, MH_PRINCE_ACT);
@@ -168,8 +170,29 @@ void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row)
                                                      .time_ms = (int32_t)row->asked,
                                                      .kind = row->kind}};
     mh_prince_send(p, &message);
+    row->ahead = p->on_way;
     p->counters.retries += row->tried;
     mh_prince_set(row, MH_PRINCE_CLOSE, p->time + window_of(p, row));
+}
+
+/* What made the locator ask was the first of many samples to be large enough, so its noise is too, and the target has moved on since: what counts is a sample taken with those
+ * of the others. That may have fallen below 1 again: then the target is about as far as a node can hear it. */
+void mh_prince_take_own(struct mh_prince *p, struct mh_prince_row *row)
+{
+    if (row->state != MH_PRINCE_LOCATE) {
+        return;
+    }
+    const uint8_t number = mh_prince_number(p, row);
+    row->localised = p->sampled;
+    for (uint8_t i = 0; i < p->reply_count; i++) {
+        struct mh_measurement *reply = &p->replies[i];
+        if (reply->target == number) {
+            reply->time = p->sampled;
+        }
+        if (reply->target == number && reply->node == p->node->id) {
+            reply->value = p->value > MH_Q20_ONE ? p->value : MH_Q20_ONE;
+        }
+    }
 }
 
 static void count_kind(struct mh_prince *p, uint8_t kind)

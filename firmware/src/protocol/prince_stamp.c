@@ -5,7 +5,7 @@
 void mh_prince_detect(struct mh_prince *p, struct mh_prince_row *row)
 {
     row->value = p->value;
-    row->asked = p->time;
+    row->asked = row->localised = p->time;
     mh_prince_discard(p, row);
     mh_prince_collect(p, row, p->node->id, &p->node->place, p->value);
     mh_prince_enter(p, row);
