@@ -26,15 +26,17 @@
  *   - Answers are lost: RETRY. Nobody hears fail_t who hears the target: RELAY, who wins and gets no answers says fail_t again; and who hears
  *     the target when its time to watch is over watches on, as competitor.
  *   - The target turns: EXCEPTION.
- *   - An awake_t is lost: whoever has one with a newer generation says it again to whoever asks with an older one.
- *   - Two locate at once: the one who hears of the other and was later, or at the same time has the higher identifier, gives up. Two heads of one generation: likewise, by their fixes.
+ *   - An awake_t is lost: a head says it again when it hears anything of an earlier generation, or of a new target that its own explains; at most every 0.5 s.
+ *   - Two locate at once: the one who hears of the other and was later, or at the same time has the higher identifier, gives up, and
+ *     all answer the first. Two heads of one generation: likewise, by their fixes.
  * A target that all of this does not find is lost when the last watcher's time is over; where it is found again, as new, under another identifier. With watch_period 0 it is not looked for.
  *
  * Several targets (Han, 3.2): rows do not know of each other, but a watcher takes for a target's energy its share (3-3) in what it hears, by where it and the others within 3 R are expected, and only while
- * the target should be within range, give or take 10 m. A competitor, and an outer node, must hear more than the other rows explain. A tracker localises among the others
- * (tracker.h). Identifiers are founder x 16 + a count, so no two founders give the same. What no row explains is a new target: entries, and every node once a watch_period, look for such.
- * Groups: where the tracker says that two targets are to go on as one, the head asks the other's (merge_t), and after its answer the group goes on under the lower identifier;
- * where it falls apart each part gets a prince (awake_t) of its own.
+ * the target should be within range, give or take 10 m. A competitor, and an outer node, must hear more than the other rows explain, and its target must have a quarter of it. A tracker localises among the others
+ * (tracker.h). Identifiers are founder x 16 + a count, so no two founders give the same. What no row explains is a new target: entries, and every node once a watch_period, look for such, but
+ * not within 25 m, and the way it may have gone since its fix, of one that is known: targets that appear side by side are found one after the other, or as one.
+ * Groups: where the tracker says that two targets are to go on as one, the head takes the other in, under the lower identifier, and says so (merge_t), which the other's head answers; it is said again
+ * when the group meets it again. Where it falls apart each part gets a prince (awake_t) of its own.
  *
  * A table that is full: the row goes whose target is out of range first (time_out), one that sleeps before one that watches; a locator's or head's row never. If none can go the
  * newcomer is not taken. Both are counted (evicted).
