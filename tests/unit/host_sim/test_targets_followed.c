@@ -142,14 +142,14 @@ static void two_tracks_on_one_target_are_one(void)
 }
 
 /* One target 400 m along x at 10 m/s; fixes each 50 m, each 3 m off, until `last_m`. */
-static struct followed fixed_until(double last_m)
+static struct followed fixed_until(int last_m)
 {
     recorder.track_count = recorder.truth_count = recorder.samples = 0;
     for (int i = 0; i <= 40; i++) {
         be_at(i, 0, 10.0 * i, 0);
     }
-    for (double x_m = 25; x_m <= last_m; x_m += 50) {
-        (void)follow(x_m / 10, 0, x_m, 3);
+    for (int x_m = 25; x_m <= last_m; x_m += 50) {
+        (void)follow(x_m / 10.0, 0, x_m, 3);
     }
     return followed_of(&recorder, &scenario);
 }
