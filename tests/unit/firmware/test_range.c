@@ -75,7 +75,7 @@ static void follows_a_straight_line(void)
             }
         }
         TEST_ASSERT_EQUAL_INT(MH_OK, step(t0 + (mh_tick)(i * INTERVAL), ANCHORS));
-        TEST_ASSERT_EQUAL_UINT8(i == 1 ? MH_ESTIMATE_STARTED : 0, estimate.flags & ~MH_ESTIMATE_REFRESHED);
+        TEST_ASSERT_EQUAL_UINT8(i == 1 ? MH_ESTIMATE_STARTED : 0, estimate.flags & ~(unsigned)MH_ESTIMATE_REFRESHED);
         TEST_ASSERT_EQUAL_UINT16(ANCHORS, estimate.measurements);
     }
     assert_at(0.01f, 8, 1);
