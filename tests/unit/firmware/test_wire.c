@@ -605,7 +605,7 @@ static void fields_of_a_targets_heads_that_nobody_writes_are_corrupt(void)
     bad.as.awake.length = 2 * MH_AWAKE_BYTES + 1;
     expect_corrupt(&bad);
     bad = example(MH_MESSAGE_AWAKE);
-    bad.as.awake.length -= 1; /* something behind the end */
+    bad.as.awake.length--; /* something behind the end */
     expect_corrupt(&bad);
     bad = example(MH_MESSAGE_REST);
     bad.as.rest.length = 1;
