@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static const double end_m = 150, coalesced_share = 0.5;
+static const double coalesced_share = 0.5;
 
 enum { NOBODY = -1 };
 
@@ -133,7 +133,7 @@ static void judge_end(struct walk *walk)
         exchanged += is_exchanged(walk, number);
         claimed += is_exchanged(walk, number) && !cannot_tell;
         followed->unresolved = followed->unresolved || cannot_tell;
-        followed->lost = followed->lost || !line->fixed || gap_m > end_m;
+        followed->lost = followed->lost || !line->fixed || !truths_near_end(walk->recorder, number, since_s);
         followed->longest_gap_m = fmax(followed->longest_gap_m, gap_m);
     }
     followed->swaps = (exchanged + 1) / 2;

@@ -27,6 +27,7 @@ struct told {
     bool known, grouped;
     int32_t by; /* the identifier of the track */
     int32_t mode;
+    double time_s;
 };
 
 struct walk {
@@ -137,7 +138,8 @@ static bool take(struct walk *walk, const motehound_track_t *track)
     for (size_t i = 0; i < count; i++) {
         struct told *told = &walk->told[numbers[i]];
         changes = changes || (told->known && told->mode != track->mode);
-        *told = (struct told){!(track->flags & MH_ESTIMATE_STARTED), is_group(track), track->target, track->mode};
+        *told = (struct told){!(track->flags & MH_ESTIMATE_STARTED), is_group(track), track->target, track->mode,
+                              track->time_s};
     }
     return changes;
 }
@@ -266,7 +268,8 @@ static struct grouping judge_end(struct walk *walk)
     const double duration_s = walk->recorder->last_s - walk->recorder->first_s, none = (double)NAN;
     bool apart = walk->targets > 0;
     for (size_t i = 0; i < walk->targets; i++) {
-        apart = apart && walk->told[i].known && !walk->told[i].grouped;
+        const struct told *told = &walk->told[i];
+        apart = apart && told->known && !told->grouped && truths_near_end(walk->recorder, i, told->time_s);
         for (size_t j = i + 1; j < walk->targets; j++) {
             settle(walk, &walk->pairs[i][j], walk->recorder->last_s);
         }

@@ -21,7 +21,7 @@ struct grouping {
     double
         count_right; /* share of the instants at which the targets that are followed, those in groups with them, are as many as there are; from
                             metrics.skip_first on, and in an ideal network, where all are told of at every instant */
-    double apart_at_end; /* 1 if every target is followed by itself in the end, else 0 */
+    double apart_at_end; /* 1 if every target is followed by itself in the end (on the last 150 m of its way), else 0 */
 };
 
 /* Cost: instants x targets cubed. */

@@ -86,7 +86,7 @@ struct errors {
     X(MODE_CHANGES_PER_MIN, "mode_changes_per_min", "sound: instants a minute at which a target becomes single, one of several or part of a group") \
     X(SPURIOUS_SPLITS_PER_MIN, "spurious_splits_per_min", "groups: instants a minute at which one loses targets that are together, of the time that targets are") \
     X(COUNT_RIGHT, "count_right", "sound, ideal network: share of the sampling instants at which as many targets are followed as there are, those in groups with them") \
-    X(APART_AT_END, "apart_at_end", "sound: 1 if every target is followed by itself in the end, else 0")                    \
+    X(APART_AT_END, "apart_at_end", "sound: 1 if every target is followed by itself in the end (on the last 150 m of its way), else 0") \
     X(RMSE_OVER_CRLB, "rmse_over_crlb", "sound: position_rmse_m over fix_crlb_m")                                           \
     X(RATE_RATIO, "rate_ratio", "leak: the last estimate of its rate of release over the true one")
 /* clang-format on */

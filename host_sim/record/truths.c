@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+static const double end_m = 150;
+
 /* The first that is not before time_s. */
 static size_t first_from(const struct recorder *recorder, double time_s)
 {
@@ -74,4 +76,9 @@ double truths_way_m(const struct recorder *recorder, size_t number, double from_
         }
     }
     return to_s > from_s ? way_m + hypot(there.x_m - here.x_m, there.y_m - here.y_m) : 0;
+}
+
+bool truths_near_end(const struct recorder *recorder, size_t number, double time_s)
+{
+    return truths_way_m(recorder, number, time_s, recorder->last_s) <= end_m;
 }

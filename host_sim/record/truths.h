@@ -15,4 +15,7 @@ bool truths_at(const struct recorder *recorder, size_t number, double time_s, st
 /* How far it goes from from_s to to_s; 0 unless that is later. Cost: the instants between. */
 double truths_way_m(const struct recorder *recorder, size_t number, double from_s, double to_s);
 
+/* At time_s it has at most 150 m to go, until it or the run ends. Cost: as truths_way_m. */
+bool truths_near_end(const struct recorder *recorder, size_t number, double time_s);
+
 #endif

@@ -111,7 +111,7 @@ MEANING = {
         "sound, ideal network: share of the sampling instants at which as many targets are followed as there "
         "are, those in groups with them"
     ),
-    "apart_at_end": "1 if every target is followed by itself in the end, else 0",
+    "apart_at_end": "1 if every target is followed by itself in the end (on the last 150 m of its way), else 0",
     "rmse_over_crlb": "position_rmse_m over fix_crlb_m",
     "messages_per_cluster": "calls to localise, answers, and those of competitions, by fix",
     "messages_per_cluster_all": (

@@ -281,6 +281,29 @@ static void a_target_that_nobody_follows_is_missed_in_the_count(void)
     TEST_ASSERT_TRUE(isnan(grouping_of(&recorder, &scenario).count_right));
 }
 
+/* Two targets by themselves over 780 m, the second until `last_m`. */
+static double apart_until(double last_m)
+{
+    recorder.track_count = recorder.truth_count = recorder.samples = 0;
+    for (int i = 0; i < 40; i++) {
+        be_at(2.0 * i, 0, 20.0 * i, 0);
+        be_at(2.0 * i, 1, 20.0 * i, 50);
+        (void)follow(2.0 * i, 0, 20.0 * i, 0);
+        if (20.0 * i <= last_m) {
+            (void)follow(2.0 * i, 1, 20.0 * i, 50);
+        }
+    }
+    return grouping_of(&recorder, &scenario).apart_at_end;
+}
+
+static void a_target_that_is_followed_no_more_is_not_followed_by_itself(void)
+{
+    NEAR(1, apart_until(780));
+    NEAR(1, apart_until(640));
+    NEAR(0, apart_until(620));
+    NEAR(0, apart_until(-1));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -294,6 +317,7 @@ int main(void)
     RUN_TEST(what_is_never_reported_takes_until_the_end);
     RUN_TEST(targets_are_together_by_a_chain);
     RUN_TEST(a_target_that_nobody_follows_is_missed_in_the_count);
+    RUN_TEST(a_target_that_is_followed_no_more_is_not_followed_by_itself);
     port_exit(UNITY_END() > 0);
     return 0;
 }
