@@ -16,13 +16,15 @@
  *     competitor       by the election: COMPETITION: after a back-off of up to `contest` it says its energy (compete_t), unless three others have; soon after, the strongest
  *                      asks. TIMESTAMP: as prince_stamp.c has it.
  * Who hears locate_t samples; hearing the target it answers (sound_t), the nearer the sooner, unless `replies` others have; in turn of where the neighbours and
- * the target are expected to be, or where that says nothing (exceptions, competitions), by the energy. The locator collects for `window`. With two answers and more
+ * the target are expected to be, or where that says nothing (exceptions, competitions), by the energy. The locator, too, samples anew when its locate_t
+ * is out: what made it ask is the first sample that was large enough, and so mostly too large. The fix is of that time; an energy that has fallen below 1 counts as 1. TIMESTAMP: the samples are
+ * those of the detections. The locator collects for `window`. With two answers and more
  * the port localises the target, the locator is head, tells the old one (succeed_t; whoever overhears it waits for the new awake_t) and all (awake_t). Else it tries once more if
  * it still hears the target; then it says fail_t, and all who hear that are competitors for 10 s.
  *
  * What goes wrong, each guard in `guards` by itself:
  *   - The prince is dead, asleep, or has never heard that it is prince: REGENT, and WATCHDOG: a head of which nobody has taken over by 2.5 s after the prince was due, or when the target may have left its
- *     radio range, says fail_t.
+ *     radio range, 25 s after the fix at the latest, says fail_t.
  *   - Answers are lost: RETRY. Nobody hears fail_t who hears the target: RELAY, who wins and gets no answers says fail_t again; and who hears
  *     the target when its time to watch is over watches on, as competitor.
  *   - The target turns: EXCEPTION.
@@ -33,7 +35,7 @@
  *
  * Several targets (Han, 3.2): rows do not know of each other, but a watcher takes for a target's energy its share (3-3) in what it hears, by where it and the others within 3 R are expected, and only while
  * the target should be within range, give or take 10 m. A competitor, and an outer node, must hear more than the other rows explain, and its target must have a quarter of it. A tracker localises among the others
- * (tracker.h). Identifiers are founder x 16 + a count, so no two founders give the same. What no row explains is a new target: entries, and every node once a watch_period, look for such, but
+ * (tracker.h). Identifiers are founder x 16 + a count, so no two founders below 2^28 give the same. What no row explains is a new target: entries, and every node once a watch_period, look for such, but
  * not within 25 m, and the way it may have gone since its fix, of one that is known: targets that appear side by side are found one after the other, or as one.
  * Groups: where the tracker says that two targets are to go on as one, the head takes the other in, under the lower identifier, and says so (merge_t), which the other's head answers; it is said again
  * when the group meets it again. Where it falls apart each part gets a prince (awake_t) of its own.
@@ -193,7 +195,7 @@ struct mh_prince_row {
     uint8_t announces;             /* enum mh_message_kind */
     uint8_t wants;                 /* MH_PRINCE_WANTS_* */
     mh_tick localised;             /* locator: the time that its answers are of */
-    uint8_t ahead; /* locator: frames whose fate is told before that of its locate_t, and it; 0: it is out */
+    uint8_t unsent; /* locator: frames whose fate is told before that of its locate_t, and it; 0: it is out */
 
     /* a query heard, to be answered; a query sent: asker is this node */
     mh_node_id asker;

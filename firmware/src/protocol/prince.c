@@ -586,7 +586,7 @@ static void sent(void *state, mh_tick now, enum mh_sent outcome)
     }
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         struct mh_prince_row *row = &p->rows[i];
-        if (row->state == MH_PRINCE_LOCATE && row->ahead > 0 && --row->ahead == 0) {
+        if (row->state == MH_PRINCE_LOCATE && row->unsent > 0 && --row->unsent == 0) {
             mh_prince_sample(p, row, MH_PRINCE_WANTS_OWN);
         }
     }

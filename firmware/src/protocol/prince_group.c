@@ -157,7 +157,7 @@ void mh_prince_regroup(struct mh_prince *p, struct mh_prince_row *row, const str
 void mh_prince_hear_merge(struct mh_prince *p, const mh_merge_t *merge)
 {
     struct mh_prince_row *row = mh_prince_find(p, (uint32_t)merge->other);
-    if (!row || merge->other == merge->target) {
+    if (!row || merge->other == 0 || merge->other == merge->target) {
         return;
     }
     if (row->state == MH_PRINCE_HEAD && !merge->answers) {

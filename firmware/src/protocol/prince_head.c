@@ -10,6 +10,7 @@
 #define DOG_WAIT 2500      /* ticks after the prince was due */
 #define DOG_HASTE 1.2f     /* times the largest of the last speeds is what the target may do */
 #define DOG_SPEED_MPS 6.0f /* ... at least */
+#define DOG_LATEST 25.0f   /* s after the fix: later nobody would believe it (mh_prince_is_fresh) */
 #define UNGUARDED 15000    /* ticks for which a head without watchdog waits after the prince was due */
 #define KEPT 20000         /* ticks for which a row is kept after that */
 #define SLOWEST_MPS 1.0f   /* a velocity below is none */
@@ -199,7 +200,7 @@ static void set_dog(struct mh_prince *p, struct mh_prince_row *row)
     }
     const mh_real away_s =
         (config->radio_range_m - config->sensing_range_m) / mh_max(DOG_HASTE * largest, DOG_SPEED_MPS);
-    mh_tick due = row->found + (mh_tick)(away_s * 1000.0f);
+    mh_tick due = row->found + (mh_tick)(mh_min(away_s, DOG_LATEST) * 1000.0f);
     if (row->prince != MH_BROADCAST && mh_tick_before(row->enters + DOG_WAIT, due)) {
         due = row->enters + DOG_WAIT;
     }
@@ -385,7 +386,8 @@ void mh_prince_hear_fail(struct mh_prince *p, const mh_fail_t *fail)
 void mh_prince_hear_succeed(struct mh_prince *p, const mh_succeed_t *succeed)
 {
     struct mh_prince_row *row = mh_prince_find(p, (uint32_t)succeed->target);
-    if (!row || row->state == MH_PRINCE_SLEEP || mh_prince_ahead((uint16_t)succeed->generation, row->generation) <= 0) {
+    if (!row || succeed->target == 0 || row->state == MH_PRINCE_SLEEP ||
+        mh_prince_ahead((uint16_t)succeed->generation, row->generation) <= 0) {
         return;
     }
     const bool led = row->state == MH_PRINCE_HEAD;

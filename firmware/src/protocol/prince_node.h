@@ -100,6 +100,9 @@ void mh_prince_quiet(struct mh_prince *p, struct mh_prince_row *row);
 /* Localise the target: sample, and if it is heard, ask (locate_t). */
 void mh_prince_ask(struct mh_prince *p, struct mh_prince_row *row, enum mh_locate kind);
 
+/* How long answers about the target are waited for. */
+mh_tick mh_prince_window(const struct mh_prince *p, const struct mh_prince_row *row);
+
 /* A target that has none yet gets its identifier. */
 void mh_prince_name(struct mh_prince *p, struct mh_prince_row *row);
 
@@ -125,7 +128,7 @@ bool mh_prince_has_track(const struct mh_prince_row *row);
 /* How many answers of others there are. */
 uint8_t mh_prince_collected(const struct mh_prince *p, const struct mh_prince_row *row);
 
-/* Localise with the answers that there are, of time row->asked. Returns true if this node is head now; else the row is as it was. The answers are discarded. */
+/* Localise with the answers that there are, of time row->localised. Returns true if this node is head now; else the row is as it was. The answers are discarded. */
 bool mh_prince_localise(struct mh_prince *p, struct mh_prince_row *row);
 
 /* The query's time is over: localise, try again, or say that it failed. */

@@ -120,7 +120,7 @@ void mh_prince_ask(struct mh_prince *p, struct mh_prince_row *row, enum mh_locat
     mh_prince_sample(p, row, MH_PRINCE_WANTS_QUERY);
 }
 
-static mh_tick window_of(const struct mh_prince *p, const struct mh_prince_row *row)
+mh_tick mh_prince_window(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     return row->members > 1 ? 2 * p->config->window : p->config->window;
 }
@@ -170,9 +170,9 @@ void mh_prince_query(struct mh_prince *p, struct mh_prince_row *row)
                                                      .time_ms = (int32_t)row->asked,
                                                      .kind = row->kind}};
     mh_prince_send(p, &message);
-    row->ahead = p->on_way;
+    row->unsent = p->on_way;
     p->counters.retries += row->tried;
-    mh_prince_set(row, MH_PRINCE_CLOSE, p->time + window_of(p, row));
+    mh_prince_set(row, MH_PRINCE_CLOSE, p->time + mh_prince_window(p, row));
 }
 
 /* What made the locator ask was the first of many samples to be large enough, so its noise is too, and the target has moved on since: what counts is a sample taken with those
@@ -249,7 +249,7 @@ void mh_prince_close(struct mh_prince *p, struct mh_prince_row *row)
 /* Several ask about one target: the first of them goes on, and is answered. A query that is over, or for a generation before, does not count. */
 static bool yields(const struct mh_prince *p, const struct mh_prince_row *row, const mh_locate_t *locate)
 {
-    const bool open = row->state == MH_PRINCE_LOCATE || p->time - row->queried < window_of(p, row);
+    const bool open = row->state == MH_PRINCE_LOCATE || p->time - row->queried < mh_prince_window(p, row);
     const int16_t ahead = mh_prince_ahead((uint16_t)locate->generation, row->asked_for);
     return !open || ahead > 0 ||
            (ahead == 0 &&
@@ -274,7 +274,7 @@ static struct mh_prince_row *row_of_stranger(struct mh_prince *p, const mh_locat
 
 void mh_prince_hear_locate(struct mh_prince *p, const mh_locate_t *locate)
 {
-    if (!mh_prince_is_fresh(p, (mh_tick)locate->time_ms)) {
+    if (!mh_prince_is_fresh(p, (mh_tick)locate->time_ms) || locate->target == 0) {
         return;
     }
     struct mh_prince_row *row = mh_prince_find(p, (uint32_t)locate->target);
@@ -327,7 +327,7 @@ static uint8_t rank(const struct mh_prince *p, const struct mh_prince_row *row)
 /* The nearer the sooner: by rank where the target is where it is expected, else by the energy. */
 static mh_tick reply_wait(struct mh_prince *p, const struct mh_prince_row *row, mh_real energy)
 {
-    const mh_tick window = window_of(p, row);
+    const mh_tick window = mh_prince_window(p, row);
     const bool foreseen = row->kind == MH_LOCATE_PRINCE || row->kind == MH_LOCATE_REGENT ||
                           (row->kind == MH_LOCATE_COMPETITION && p->config->election != MH_PRINCE_NAMED);
     if (mh_prince_speed(row) > 0 && foreseen) {

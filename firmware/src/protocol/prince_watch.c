@@ -257,7 +257,7 @@ void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct m
 static void watch_row(struct mh_prince *p, struct mh_prince_row *row)
 {
     const struct mh_prince_config *config = p->config;
-    const bool queried = p->time - row->queried < config->window + QUERY_REST;
+    const bool queried = p->time - row->queried < mh_prince_window(p, row) + QUERY_REST;
     if (row->act != MH_PRINCE_ACT_NONE || row->wants != 0 || row->is_passive || queried ||
         mh_tick_before(p->time, row->hold) || !mh_prince_hears(p, row)) {
         return;

@@ -17,7 +17,9 @@ static struct {
     bool sensing, listens, knows_time;
     unsigned sensed, told, localised, began, others;
     size_t measurements;
-    mh_real energy; /* that the node hears */
+    mh_tick localised_at;
+    mh_q20 own_value; /* of the measurement that is the node's own */
+    mh_real energy;   /* that the node hears */
     enum mh_status status;
     struct mh_estimate estimate, told_of;
     enum mh_status join_status;
@@ -86,7 +88,9 @@ static enum mh_status localise(void *context, const struct mh_saved_track *track
     saw.began += track->length == 0;
     saw.others = (unsigned)count;
     saw.measurements = measurement_count;
+    saw.localised_at = time;
     for (size_t i = 0; i < measurement_count; i++) {
+        saw.own_value = measurements[i].node == NODE ? measurements[i].value : saw.own_value;
         TEST_ASSERT_EQUAL_UINT32(time, measurements[i].time);
         TEST_ASSERT_EQUAL(0, measurements[i].target);
     }
@@ -326,6 +330,13 @@ static void become_head(void)
     TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET));
 }
 
+/* The oldest frame of which this has not been told is out, or is not. */
+static void tell_fate(enum mh_sent outcome)
+{
+    prince->sent(&state, saw.time + AHEAD, outcome);
+    settle();
+}
+
 static void hello_of(mh_node_id id, int32_t x_mm)
 {
     const struct mh_message message = {.kind = MH_MESSAGE_HELLO,
@@ -440,6 +451,67 @@ static void a_fix_makes_a_head_that_tells_the_old_one_and_all(void)
     TEST_ASSERT_EQUAL_UINT32(TARGET, saw.told_of.target);
     TEST_ASSERT_EQUAL(1, state.counters.located);
     TEST_ASSERT_EQUAL(1, state.counters.princes);
+}
+
+/* Until the locate_t is out, `late` ticks after the query: the hellos of the start are before it. */
+static void ask_and_sample_again(mh_tick late, mh_real energy)
+{
+    ask_as_prince();
+    const unsigned sensed = saw.sensed;
+    run_until(saw.time + late);
+    saw.energy = energy;
+    for (unsigned i = 0; i < saw.of_kind[MH_MESSAGE_HELLO]; i++) {
+        tell_fate(i == 0 ? MH_SENT_BUSY : MH_SENT_OK); /* one that never went out had its turn, too */
+        TEST_ASSERT_EQUAL(sensed, saw.sensed);
+    }
+    tell_fate(MH_SENT_OK);
+    TEST_ASSERT_EQUAL(sensed + 1, saw.sensed);
+    answer(); /* to the time of the query */
+    tell_fate(MH_SENT_OK);
+    TEST_ASSERT_EQUAL(sensed + 1, saw.sensed);
+}
+
+static void the_locator_samples_again_when_its_query_is_out(void)
+{
+    ask_and_sample_again(7, 3);
+    const mh_tick asked = (mh_tick)saw.last[MH_MESSAGE_LOCATE].as.locate.time_ms;
+    run_until(asked + 300);
+    TEST_ASSERT_EQUAL(3, saw.measurements);
+    TEST_ASSERT_EQUAL_INT32(MH_Q20(3.0f), saw.own_value);
+    TEST_ASSERT_EQUAL_UINT32(asked + 7, saw.localised_at);
+    TEST_ASSERT_EQUAL_UINT32(asked + 7, row_of(TARGET)->found);
+    TEST_ASSERT_EQUAL_INT32(asked + 7, saw.last[MH_MESSAGE_AWAKE].as.awake.time_ms);
+    TEST_ASSERT_EQUAL_UINT32(asked + 7, saw.told_of.time);
+}
+
+static void what_it_then_hears_no_more_counts_as_1(void)
+{
+    ask_and_sample_again(7, 0.4f);
+    run_until(saw.time + 300);
+    TEST_ASSERT_EQUAL(3, saw.measurements);
+    TEST_ASSERT_EQUAL_INT32(MH_Q20_ONE, saw.own_value);
+}
+
+static void where_nobody_says_that_it_is_out_the_first_sample_counts(void)
+{
+    ask_as_prince();
+    const mh_tick asked = (mh_tick)saw.last[MH_MESSAGE_LOCATE].as.locate.time_ms;
+    saw.energy = 3;
+    answer();
+    run_until(asked + 300);
+    TEST_ASSERT_EQUAL_INT32(MH_Q20(2.0f), saw.own_value);
+    TEST_ASSERT_EQUAL_UINT32(asked, saw.localised_at);
+}
+
+static void who_has_given_up_before_it_is_out_does_not_sample(void)
+{
+    ask_as_prince();
+    tell_the(succeed(6, OTHER, HEAD));
+    const unsigned sensed = saw.sensed;
+    for (unsigned i = 0; i < 10; i++) {
+        tell_fate(MH_SENT_OK); /* more than there were */
+    }
+    TEST_ASSERT_EQUAL(sensed, saw.sensed);
 }
 
 static void an_outer_node_raises_an_exception_at_a_higher_energy(void)
@@ -592,6 +664,20 @@ static void a_query_keeps_others_from_asking(void)
     tell_the(locate(6, OTHER, MH_LOCATE_PRINCE));
     run_until(saw.time + 490);
     TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_LOCATE]);
+}
+
+/* Answers about a group take twice as long. */
+static void a_query_about_a_group_keeps_them_twice_as_long(void)
+{
+    struct mh_message message = awake(5, HEAD, MH_BROADCAST);
+    message.as.awake.members = 2;
+    hear(&message);
+    tell_the(locate(6, OTHER, MH_LOCATE_COMPETITION));
+    saw.energy = 2;
+    run_until(saw.time + 2 * config.window + 199);
+    TEST_ASSERT_EQUAL(MH_PRINCE_ACT_NONE, row_of(TARGET)->act);
+    run_until(saw.time + 250);
+    TEST_ASSERT_EQUAL(MH_PRINCE_ACT_CONTEND, row_of(TARGET)->act);
 }
 
 static void an_exception_takes_the_princes_right(void)
@@ -823,6 +909,19 @@ static void or_the_farthest(void)
     hello_of(NEXT, 130000);
     become_head();
     TEST_ASSERT_EQUAL_INT32(NEXT, saw.last[MH_MESSAGE_AWAKE].as.awake.prince);
+}
+
+/* Radio of 1 km: the target would not leave it for 160 s, but then nobody would believe the fail_t. */
+static void a_watchdog_does_not_wait_until_nobody_believes_it(void)
+{
+    config.radio_range_m = 1000;
+    saw.estimate.velocity.x = 0;
+    become_head();
+    saw.energy = 0;
+    run_until(row_of(TARGET)->found + 24990);
+    TEST_ASSERT_EQUAL(0, saw.of_kind[MH_MESSAGE_FAIL]);
+    run_until(saw.time + 10);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_FAIL]);
 }
 
 static void the_largest_of_the_last_speeds_hastens_the_watchdog(void)
@@ -1083,6 +1182,31 @@ static void what_is_of_no_time_about_now_is_refused(void)
     TEST_ASSERT_EQUAL(2, state.counters.refused);
 }
 
+/* Only who contends for a new target speaks of one without a name. */
+static void what_needs_a_name_and_has_none_is_refused(void)
+{
+    struct mh_message message = locate(3, OTHER, MH_LOCATE_PRINCE);
+    message.as.locate.target = 0;
+    hear(&message);
+    TEST_ASSERT_EQUAL(MH_PRINCE_FREE, state_of(0));
+
+    static const struct mh_prince_entry entry = {{0, 0, 0}, NOW};
+    config.entries = &entry;
+    config.entry_count = 1;
+    come_up();
+    saw.energy = 2;
+    run_until(saw.time + 250);
+    TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(0));
+    message = succeed(1, OTHER, HEAD);
+    message.as.succeed.target = 0;
+    hear(&message);
+    TEST_ASSERT_FALSE(row_of(0)->is_passive);
+    message.kind = MH_MESSAGE_MERGE;
+    message.as.merge = (mh_merge_t){.sender = (int32_t)OTHER, .target = (int32_t)TARGET};
+    hear(&message);
+    TEST_ASSERT_EQUAL(MH_PRINCE_WATCH, state_of(0));
+}
+
 static void radios_without_watching_rows_sleep_but_in_windows(void)
 {
     config.wake_period = 250;
@@ -1266,6 +1390,10 @@ int main(void)
     RUN_TEST(a_watcher_stays_until_the_target_has_passed);
     RUN_TEST(the_prince_asks_as_soon_as_it_hears_the_target);
     RUN_TEST(a_fix_makes_a_head_that_tells_the_old_one_and_all);
+    RUN_TEST(the_locator_samples_again_when_its_query_is_out);
+    RUN_TEST(what_it_then_hears_no_more_counts_as_1);
+    RUN_TEST(where_nobody_says_that_it_is_out_the_first_sample_counts);
+    RUN_TEST(who_has_given_up_before_it_is_out_does_not_sample);
     RUN_TEST(an_outer_node_raises_an_exception_at_a_higher_energy);
     RUN_TEST(a_regent_asks_when_the_prince_does_not);
     RUN_TEST(without_that_guard_it_does_not);
@@ -1277,6 +1405,7 @@ int main(void)
     RUN_TEST(who_does_not_hear_it_is_silent);
     RUN_TEST(answers_that_are_enough_keep_others_silent);
     RUN_TEST(a_query_keeps_others_from_asking);
+    RUN_TEST(a_query_about_a_group_keeps_them_twice_as_long);
     RUN_TEST(an_exception_takes_the_princes_right);
     RUN_TEST(without_answers_the_prince_tries_again_then_says_that_it_failed);
     RUN_TEST(who_hears_the_target_no_more_does_not_try_again);
@@ -1297,6 +1426,7 @@ int main(void)
     RUN_TEST(a_head_that_nobody_relieves_says_so);
     RUN_TEST(the_prince_is_whom_the_target_reaches_after_the_step);
     RUN_TEST(or_the_farthest);
+    RUN_TEST(a_watchdog_does_not_wait_until_nobody_believes_it);
     RUN_TEST(the_largest_of_the_last_speeds_hastens_the_watchdog);
     RUN_TEST(without_watchdog_a_head_gives_up_in_the_end);
     RUN_TEST(a_long_track_comes_in_two_parts);
@@ -1314,6 +1444,7 @@ int main(void)
 #endif
     RUN_TEST(before_the_time_is_known_nothing_is_done);
     RUN_TEST(what_is_of_no_time_about_now_is_refused);
+    RUN_TEST(what_needs_a_name_and_has_none_is_refused);
     RUN_TEST(radios_without_watching_rows_sleep_but_in_windows);
     RUN_TEST(configurations_are_checked);
     RUN_TEST(a_head_takes_in_another_target);

@@ -15,6 +15,8 @@ static struct {
     struct mh_message last[MH_MESSAGE_KINDS];
     mh_tick time, timer;
     bool sensing;
+    unsigned sensed;
+    mh_tick localised_at;
     size_t measurements;
     mh_real energy; /* that the node hears */
     enum mh_status status;
@@ -58,6 +60,7 @@ static void sense(void *context, mh_tick now, mh_tick time)
     (void)context;
     TEST_ASSERT_EQUAL_UINT32(now, time);
     saw.sensing = true;
+    saw.sensed++;
 }
 
 static void tell(void *context, const struct mh_estimate *estimate)
@@ -76,6 +79,7 @@ static enum mh_status localise(void *context, const struct mh_saved_track *track
     (void)others;
     (void)count;
     saw.measurements = measurement_count;
+    saw.localised_at = time;
     for (size_t i = 0; i < measurement_count; i++) {
         TEST_ASSERT_EQUAL_UINT32(time, measurements[i].time);
     }
@@ -275,6 +279,25 @@ static void the_first_suppresses_the_others_and_locates_with_their_detections(vo
     TEST_ASSERT_EQUAL_UINT32(1, state.counters.competitions);
 }
 
+/* Its fix is of the time when it detected the target: nobody samples again. */
+static void the_first_does_not_sample_again(void)
+{
+    const mh_tick detected = detect();
+    hear(detection(6, OTHER, detected + 100));
+    hear(detection(6, THIRD, detected + 200));
+    run_until(detected + config.contest);
+    const unsigned sensed = saw.sensed;
+    for (unsigned i = 0; i < saw.of_kind[MH_MESSAGE_HELLO] + saw.of_kind[MH_MESSAGE_DETECTION]; i++) {
+        prince->sent(&state, saw.time, MH_SENT_OK);
+        settle();
+    }
+    TEST_ASSERT_EQUAL(sensed, saw.sensed);
+    run_until(over(detected));
+    TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, row()->state);
+    TEST_ASSERT_EQUAL_UINT32(detected, saw.localised_at);
+    TEST_ASSERT_EQUAL_INT32(detected, saw.last[MH_MESSAGE_AWAKE].as.awake.time_ms);
+}
+
 static void who_was_later_holds_back(void)
 {
     const mh_tick detected = detect();
@@ -442,6 +465,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(who_detects_the_target_says_when_and_how_loud);
     RUN_TEST(the_first_suppresses_the_others_and_locates_with_their_detections);
+    RUN_TEST(the_first_does_not_sample_again);
     RUN_TEST(who_was_later_holds_back);
     RUN_TEST(of_two_at_once_the_lower_identifier_is_first);
     RUN_TEST(after_three_detections_others_are_silent);
