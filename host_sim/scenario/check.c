@@ -315,6 +315,10 @@ static int check_targets(const struct scenario *scenario, const char *name, char
     if (path == PATH_SCRIPTED) {
         return check_scripted(scenario, name, error, error_size);
     }
+    if (path == PATH_SCATTERED && scenario->target.count > 1) {
+        return fail(error, error_size, "%s: target.count: expected 1 for source.path scattered, found %lld", name,
+                    (long long)scenario->target.count);
+    }
     const struct scenario_field field = scenario_field(scenario);
     if (path == PATH_RANDOM || path == PATH_SCATTERED) {
         if (fmin(field.width_m, field.height_m) <= 2 * scenario->sensor.range_m) {
@@ -341,6 +345,12 @@ static int check_prince(const struct scenario *scenario, const char *name, char 
 {
     const double range_m = scenario->sensor.range_m, interval_s = scenario->sensor.interval_s;
     const double radio_m = radio_nominal_range_m(scenario);
+    if (scenario->source.path == PATH_SCATTERED) {
+        return fail(error, error_size,
+                    "%s: source.path: expected one that leads somewhere for network.protocol prince over the air, "
+                    "found scattered",
+                    name);
+    }
     if (range_m < 1 || range_m > 1000) {
         return fail(error, error_size, "%s: sensor.range_m: expected 1 to 1000 for network.protocol prince, found %g",
                     name, range_m);

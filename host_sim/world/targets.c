@@ -157,26 +157,21 @@ static struct point draw_place(const struct scenario *scenario, struct splitmix 
     return (struct point){x_m, margin_m + (field.height_m - 2 * margin_m) * splitmix_uniform(stream)};
 }
 
-static int make_scattered(struct targets *targets, const struct scenario *scenario, uint64_t seed, char *error,
+static int make_scattered(struct trajectory *path, const struct scenario *scenario, uint64_t seed, char *error,
                           size_t error_size)
 {
     const size_t steps = scenario_steps(scenario);
     const double interval_s = scenario->sensor.interval_s;
     struct splitmix stream = splitmix_begin(seed, SPLITMIX_TARGETS);
-    for (size_t i = 0; i < targets->count; i++) {
-        struct trajectory *path = &targets->list[i].path;
-        *path = (struct trajectory){calloc(steps + 1, sizeof *path->legs), steps + 1, (double)steps * interval_s};
-        if (!path->legs) {
-            return out_of_memory(error, error_size);
-        }
+    *path = (struct trajectory){calloc(steps + 1, sizeof *path->legs), steps + 1, (double)steps * interval_s};
+    if (!path->legs) {
+        return out_of_memory(error, error_size);
     }
     for (size_t n = 0; n <= steps; n++) {
-        for (size_t i = 0; i < targets->count; i++) {
-            const double half_s = n > 0 ? interval_s / 2 : 0; /* it is there around the instant */
-            targets->list[i].path.legs[n] = (struct leg){.start_s = (double)n * interval_s - half_s,
-                                                         .duration_s = interval_s / 2 + half_s,
-                                                         .start = draw_place(scenario, &stream)};
-        }
+        const double half_s = n > 0 ? interval_s / 2 : 0; /* it is there around the instant */
+        path->legs[n] = (struct leg){.start_s = (double)n * interval_s - half_s,
+                                     .duration_s = interval_s / 2 + half_s,
+                                     .start = draw_place(scenario, &stream)};
     }
     return 0;
 }
@@ -250,7 +245,7 @@ static int make_paths(struct targets *targets, const struct scenario *scenario, 
     case PATH_RANDOM:
         return make_random(targets, scenario, seed, error, error_size);
     case PATH_SCATTERED:
-        return make_scattered(targets, scenario, seed, error, error_size);
+        return make_scattered(&targets->list[0].path, scenario, seed, error, error_size);
     default:
         return targets_are_several(scenario->source.path)
                    ? make_formation(targets, scenario, seed, error, error_size)

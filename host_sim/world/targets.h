@@ -12,8 +12,7 @@
  *            target.turns times. They keep their places, so that the formation does not turn with them.
  * ring:      evenly on a circle of radius s about the leg, each keeping its place; the first one's direction is the seed's.
  * random:    from one place to the next, each at random in the field but for a margin of sensor.range_m, for source.duration_s (random waypoints).
- * scattered: at each sampling instant at another such place, for source.duration_s. The places of all targets, x then y, then those of the next instant, are one
- *            sequence of splitmix.h.
+ * scattered: one alone, at each sampling instant at another such place, for source.duration_s. The places, x then y, are one sequence of splitmix.h.
  * scripted:  those of scenario->targets. */
 #ifndef MOTEHOUND_SIM_TARGETS_H
 #define MOTEHOUND_SIM_TARGETS_H

@@ -243,6 +243,10 @@ static void refused(void)
         {"source.path=random", "test: source.duration_s: "},
         {"source.path=scattered&source.duration_s=10&sensor.range_m=600", "test: source.path: "},
         {"source.path=waypoints&target.count=2", "test: target.count: "},
+        {"source.path=scattered&source.duration_s=10&sensor.range_m=30&target.count=2", "test: target.count: "},
+        {"source.path=scattered&source.duration_s=10&sensor.range_m=30&network.protocol=prince&"
+         "protocol.election=prince&radio.range_m=140",
+         "test: source.path: expected one that leads"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char copy[200];
