@@ -34,7 +34,7 @@
  * source_count.h finds and MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
  * part decides.
  *
- * among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. MH_ERR_ARGUMENT: a group is not renamed. Cost: docs/costs.md. */
+ * load(): MH_ERR_CORRUPT also of a group where the tracker is `dm` or `ml`. among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. MH_ERR_ARGUMENT: a group is not renamed. Cost: docs/costs.md. */
 #ifndef MOTEHOUND_ACOUSTIC_H
 #define MOTEHOUND_ACOUSTIC_H
 
@@ -63,6 +63,10 @@
 /* Bytes of a saved track. */
 #define MH_ACOUSTIC_HEADER_BYTES 40
 #define MH_ACOUSTIC_SAVED_MAX (MH_ACOUSTIC_HEADER_BYTES + MH_GROUP_BYTES(MH_GROUP_MAX))
+#if MH_ACOUSTIC_SAVED_MAX > MH_TRACK_BYTES_MAX
+#error                                                                                                                 \
+    "MH_TRACK_BYTES_MAX must be 46 at least, with groups of n targets 43 + 12 n: a saved track has to have room in it"
+#endif
 
 /* How the energy of several targets is told apart. */
 enum mh_separation {
@@ -129,7 +133,8 @@ enum mh_status mh_acoustic_begin(struct mh_acoustic *acoustic, uint32_t target, 
                                  const struct mh_place *place, struct mh_vec2 velocity, mh_real position_sd_m,
                                  mh_real velocity_sd_mps);
 
-/* The same of `count` targets, 2 to MH_GROUP_MAX, identified as target, target + 1, ..., at places[0 .. count): a group. Errors: and MH_ERR_CAPACITY. */
+/* The same of `count` targets, 2 to MH_GROUP_MAX, identified as target, target + 1, ..., at places[0 .. count): a group. Errors: and MH_ERR_CAPACITY; MH_ERR_ARGUMENT also of
+ * `dm` and `ml`, which follow none. */
 enum mh_status mh_acoustic_begin_group(struct mh_acoustic *acoustic, uint32_t target, mh_tick time,
                                        const struct mh_place *places, uint8_t count, struct mh_vec2 velocity,
                                        mh_real position_sd_m, mh_real velocity_sd_mps);

@@ -328,6 +328,9 @@
 #if MH_SOURCES_MAX < 2 || MH_SOURCES_MAX > 8
 #error "MH_SOURCES_MAX must be 2 to 8: a fit solves twice as many equations at once"
 #endif
+#if MH_SOURCES_MAX < MH_GROUP_MAX
+#error "MH_SOURCES_MAX must not be below MH_GROUP_MAX: all targets of a group are fitted at once"
+#endif
 #if MH_COUNT_SIDE < 4 || MH_COUNT_SIDE > 32 || MH_COUNT_NODES_MAX < 4 || MH_COUNT_NODES_MAX > 64
 #error                                                                                                                 \
     "MH_COUNT_SIDE must be 4 to 32, MH_COUNT_NODES_MAX 4 to 64: both are on the stack, and the work grows with the nodes and the square of the side"

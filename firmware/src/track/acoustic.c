@@ -367,6 +367,9 @@ static void go_on(struct mh_acoustic *acoustic, const struct mh_acoustic_track *
     acoustic->stepped = acoustic->tracking = true;
 }
 
+/* A group takes a fit of several sources. */
+static bool follows_groups(const struct mh_acoustic *acoustic) { return acoustic->kind->locate_jointly != NULL; }
+
 static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
 {
     struct mh_acoustic *acoustic = state;
@@ -374,11 +377,12 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
     if (acoustic == NULL || bytes == NULL) {
         return MH_ERR_ARGUMENT;
     }
-    const enum mh_status status = mh_acoustic_read(&track, acoustic->track.group.targets[0].target, bytes, length);
-    if (status == MH_OK) {
-        go_on(acoustic, &track);
+    if (mh_acoustic_read(&track, acoustic->track.group.targets[0].target, bytes, length) != MH_OK ||
+        (track.group.count > 1 && !follows_groups(acoustic))) {
+        return MH_ERR_CORRUPT;
     }
-    return status;
+    go_on(acoustic, &track);
+    return MH_OK;
 }
 
 static void restart(void *state)
@@ -442,7 +446,7 @@ enum mh_status mh_acoustic_begin_group(struct mh_acoustic *acoustic, uint32_t ta
 {
     struct mh_vec2 members[MH_GROUP_MAX], centroid;
     struct mh_group group;
-    if (places == NULL) {
+    if (acoustic == NULL || places == NULL || count < 2 || !follows_groups(acoustic)) {
         return MH_ERR_ARGUMENT;
     }
     if (count > MH_GROUP_MAX) {
@@ -458,7 +462,7 @@ enum mh_status mh_acoustic_begin_group(struct mh_acoustic *acoustic, uint32_t ta
     }
     if (status == MH_OK) {
         acoustic->track.group = group;
-        acoustic->track.mode = count > 1 ? MH_TARGET_GROUP : MH_TARGET_SINGLE;
+        acoustic->track.mode = MH_TARGET_GROUP;
     }
     return status;
 }

@@ -177,6 +177,26 @@ static void a_group_by_weights(void)
     }
 }
 
+/* Neither from a message nor from its owner. */
+static void who_follows_no_groups_takes_none(void)
+{
+    static const struct mh_tracker *const plain[] = {&mh_tracker_dm, &mh_tracker_ml};
+    const struct mh_place places[2] = {corner, mh_place_from_offset(&corner, (struct mh_vec2){10, 0})};
+    const struct mh_vec2 velocity = {10, 0};
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_acoustic_begin_group(&states[0], 48, 0, places, 2, velocity, 3, 1));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_acoustic_begin_group(&states[1], 48, 0, places, 1, velocity, 3, 1));
+    save(0);
+    config.separation = MH_SEPARATION_NONE;
+    mh_group_config_default(&config.group, MH_GROUP_NONE);
+    for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
+        TEST_ASSERT_EQUAL_INT(MH_OK, plain[i]->init(&states[1], &config, INTERVAL));
+        TEST_ASSERT_EQUAL_INT(MH_OK, plain[i]->among(&states[1], 48, NULL, 0));
+        TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, plain[i]->load(&states[1], bytes[0], lengths[0]));
+        TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_acoustic_begin_group(&states[1], 48, 0, places, 2, velocity, 3, 1));
+        TEST_ASSERT_EQUAL_INT(MH_NONE, plain[i]->predict(&states[1], INTERVAL, &estimates[1]));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -184,5 +204,6 @@ int main(void)
     RUN_TEST(one_is_no_group);
     RUN_TEST(they_merge_and_part);
     RUN_TEST(a_group_by_weights);
+    RUN_TEST(who_follows_no_groups_takes_none);
     port_exit(UNITY_END() > 0);
 }
