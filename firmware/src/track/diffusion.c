@@ -1,5 +1,7 @@
 #include "motehound/diffusion.h"
 
+#include <string.h>
+
 #define CLUSTER_CANDIDATES (MH_DIFFUSION_SMALL ? 12 : 64)
 #define CLUSTER_LEAST 3     /* increments that make a cluster */
 #define DETECTIONS_LEAST 4  /* concentrations above chi that make a start */
@@ -546,9 +548,10 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         learn_misfit(track);
     }
     ask(track, &now);
-    struct mh_estimate result = {.measurements = track->used, .flags = flags};
-    extrapolate(track, time, &result);
-    *estimate = result;
+    memset(estimate, 0, sizeof *estimate);
+    estimate->measurements = track->used;
+    estimate->flags = flags;
+    extrapolate(track, time, estimate);
     return MH_OK;
 }
 
@@ -564,9 +567,9 @@ static enum mh_status predict(const void *state, mh_tick time, struct mh_estimat
     if (mh_tick_before(time, track->time)) {
         return MH_ERR_TIME;
     }
-    struct mh_estimate result = {.flags = MH_ESTIMATE_COASTED};
-    extrapolate(track, time, &result);
-    *estimate = result;
+    memset(estimate, 0, sizeof *estimate);
+    estimate->flags = MH_ESTIMATE_COASTED;
+    extrapolate(track, time, estimate);
     return MH_OK;
 }
 

@@ -133,7 +133,7 @@ mh_real mh_group_gap(const struct mh_group *a, struct mh_vec2 centroid_a, const 
 static uint8_t link_members(const struct mh_group *group, mh_real within, uint8_t *part_of, uint8_t *sizes)
 {
     const uint8_t n = group->count;
-    uint8_t link[MH_GROUP_MAX], size[MH_GROUP_MAX] = {0}; /* both by the first member of the part */
+    uint8_t link[MH_GROUP_MAX] = {0}, size[MH_GROUP_MAX] = {0}; /* both by the first member of the part */
     for (uint8_t i = 0; i < n; i++) {
         link[i] = i;
     }
