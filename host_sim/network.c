@@ -330,12 +330,17 @@ static void tell_awake(struct network *network, const struct network_frame *fram
     }
     const mh_awake_t *awake = &message.as.awake;
     const struct network_told now = {(mh_node_id)awake->sender, (uint32_t)awake->target, (uint16_t)awake->generation};
+    bool has_other = false;
     for (uint64_t i = 0; i < NETWORK_FORMS && i < network->awake_count; i++) {
         const struct network_told *told = &network->awakes[i];
-        if (told->head == now.head && told->target == now.target && told->generation == now.generation) {
-            return;
+        if (told->target == now.target && told->generation == now.generation) {
+            if (told->head == now.head) {
+                return;
+            }
+            has_other = true;
         }
     }
+    network->double_heads += has_other;
     network->awakes[network->awake_count++ % NETWORK_FORMS] = now;
     const double time_s = seconds(network, (int64_t)frame->time);
     if (config->observer->cluster) {
@@ -611,6 +616,7 @@ int network_count(struct network *network, struct simulation_counters *counters,
     counters->head = totals.heads;
     counters->protocol = totals.protocols;
     counters->clusters.total = totals.protocols.clusters;
+    counters->double_heads = network->double_heads;
     memcpy(counters->frames_sent, network->frames_sent, sizeof counters->frames_sent);
     const struct radio_counters *radio = &network->radio.counters;
     counters->frames_repeated = radio->frames_repeated;

@@ -70,7 +70,8 @@ struct network {
         uint16_t generation;
     } awakes[NETWORK_FORMS]; /* told last, likewise */
     uint64_t awake_count;
-    uint64_t heads; /* of searches, told */
+    uint64_t double_heads; /* of these, heads of a target's generation that another one had */
+    uint64_t heads;        /* of searches, told */
     struct account account;
     double *clock_error_s; /* of each mote, NaN where it does not know the time; NULL if all clocks are ideal */
     struct clock_errors clock_errors;

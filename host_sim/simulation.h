@@ -83,6 +83,8 @@ struct simulation_counters {
     uint64_t samples; /* sampling instants while the source was present */
     uint64_t frames_sent[MH_MESSAGE_KINDS + 1]; /* by kind; the last: of none of the library's */
     uint64_t frames_received, frames_lost;      /* receptions; the last one is the sum over the reasons at a receiver */
+    uint64_t
+        double_heads; /* prince: heads that were told of a target's generation that had one, whether or not they ever heard of each other */
     uint64_t frames_lost_by[LOSS_REASONS], frames_repeated, frames_duplicate;
     struct mh_mote_counters motes; /* summed over all motes */
     struct mh_head_counters head;

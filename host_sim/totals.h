@@ -94,7 +94,7 @@
     X(HEADS_TAKEN_OVER, "heads_taken_over", c->protocol.fixed.taken_over, "fixed clusters: times that a member led because the head was silent") \
     X(MESSAGES_PER_CLUSTER, "messages_per_cluster", per_cluster(c, messages_of_locating(c)), "prince: calls to localise, answers, and those of competitions, by fix") \
     X(MESSAGES_PER_CLUSTER_ALL, "messages_per_cluster_all", per_cluster(c, messages_of_locating(c) + messages_of_heads(c)), "prince: the same and the announcements of heads, their hand-overs and reports of failure, by fix") \
-    X(DOUBLE_HEADS, "double_heads", per_cluster(c, c->protocol.princes.double_heads), "prince: share of the fixes after which two nodes were head for a while") \
+    X(DOUBLE_HEADS, "double_heads", per_cluster(c, (double)c->double_heads), "prince: share of the fixes after which a second node was head of the same generation, for a while") \
     X(TARGETS_FOUNDED, "targets_founded", of_princes(c, c->protocol.princes.founded), "prince: times that nodes took what they heard for a new target") \
     X(FIXES, "fixes", of_princes(c, c->protocol.princes.located), "prince: fixes, each of which begins a cluster")               \
     X(FIXES_PRINCE, "fixes_prince", of_princes(c, c->protocol.princes.princes), "of these by the node that the head had chosen")     \

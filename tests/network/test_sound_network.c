@@ -210,11 +210,78 @@ static void heads_are_told(void)
     TEST_ASSERT_TRUE(seen.sum_m / (double)seen.estimate_count < 8);
 }
 
+/* Every announcement of a head that was sent, once. */
+static struct {
+    mh_awake_t awakes[200];
+    size_t count;
+} announced;
+
+static void see_awake(void *context, double time_s, mh_node_id sender, mh_node_id destination, const uint8_t *bytes,
+                      size_t length)
+{
+    struct mh_message message;
+    (void)context;
+    (void)time_s;
+    (void)sender;
+    (void)destination;
+    if (mh_wire_decode(mh_wire_all, bytes, length, &message) != MH_OK || message.kind != MH_MESSAGE_AWAKE) {
+        return;
+    }
+    for (size_t i = 0; i < announced.count; i++) {
+        const mh_awake_t *one = &announced.awakes[i];
+        if (one->sender == message.as.awake.sender && one->target == message.as.awake.target &&
+            one->generation == message.as.awake.generation) {
+            return;
+        }
+    }
+    TEST_ASSERT_TRUE(announced.count < sizeof announced.awakes / sizeof announced.awakes[0]);
+    announced.awakes[announced.count++] = message.as.awake;
+}
+
+static size_t second_heads(void)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < announced.count; i++) {
+        bool second = false;
+        for (size_t j = 0; j < i; j++) {
+            second = second || (announced.awakes[i].target == announced.awakes[j].target &&
+                                announced.awakes[i].generation == announced.awakes[j].generation);
+        }
+        count += second;
+    }
+    return count;
+}
+
+/* Those that never hear of each other count, too. */
+static void second_heads_are_counted(void)
+{
+    const struct observer observer = {.frame = see_awake};
+    size_t total = 0;
+    set("network.protocol", "prince");
+    set("protocol.election", "prince");
+    set("sensor.interval_s", "0.25");
+    set("protocol.watch_s", "0");
+    set("source.start_s", "10");
+    set("source.points", "20,20; 330,330");
+    set("radio.profile", "cc1000");
+    set("radio.range_m", "140");
+    set("radio.loss", "0.4");
+    for (uint64_t seed = 0; seed < 30; seed++) {
+        announced.count = 0;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(
+            0, simulation_run(&scenario, seed, &observer, NULL, &counters, error, sizeof error), error);
+        TEST_ASSERT_EQUAL_size_t(second_heads(), counters.double_heads);
+        total += second_heads();
+    }
+    TEST_ASSERT_GREATER_THAN_size_t(0, total);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(the_sink_hears_of_all_that_hear);
     RUN_TEST(a_recording_of_energies);
     RUN_TEST(heads_are_told);
+    RUN_TEST(second_heads_are_counted);
     port_exit(UNITY_END() > 0);
 }

@@ -117,7 +117,7 @@ MEANING = {
     "messages_per_cluster_all": (
         "the same and the announcements of heads, their hand-overs and reports of failure, by fix"
     ),
-    "double_heads": "share of the fixes after which two nodes were head for a while",
+    "double_heads": "share of the fixes after which a second node was head of the same generation, for a while",
     "targets_founded": "times that nodes took what they heard for a new target",
     "fixes": "fixes, each of which begins a cluster",
     "fixes_prince": "of these by the node that the head had chosen",
