@@ -198,7 +198,9 @@ static void run(const char *name, const char *path, const char *profile)
     stop = 0;
     const int status = simulation_run(&scenario, 1, &observer, &stop, &counters, error, sizeof error);
     TEST_ASSERT_TRUE_MESSAGE(status == 0 || stop, error);
-    TEST_ASSERT_TRUE_MESSAGE(motes - motes_before > scenario.network.nodes, name);
+    const int64_t side = scenario.network.grid;
+    TEST_ASSERT_TRUE_MESSAGE(
+        motes - motes_before > (scenario.network.layout == LAYOUT_STRAT ? side * side : scenario.network.nodes), name);
     printf("  %s, %s, battery %g J: %ld motes, %ld changes in %.0f s\n", name, profile, battery_j, motes - motes_before,
            changes, (double)last / SIM_TIME_PER_S);
     scenario_free(&scenario);
