@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -14,6 +15,32 @@ static inline void require(int holds)
     if (!holds) {
         abort();
     }
+}
+
+/* What is left of an input that is read from its beginning. */
+struct input {
+    const uint8_t *data;
+    size_t left;
+};
+
+/* The next byte; 0 behind the end. */
+static inline uint8_t byte(struct input *input)
+{
+    if (input->left == 0) {
+        return 0;
+    }
+    input->left--;
+    return *input->data++;
+}
+
+/* The next bytes, at most `most` -> to. Returns how many there were. */
+static inline size_t bytes(struct input *input, uint8_t *to, size_t most)
+{
+    const size_t count = most < input->left ? most : input->left;
+    memcpy(to, input->data, count);
+    input->data += count;
+    input->left -= count;
+    return count;
 }
 
 #endif

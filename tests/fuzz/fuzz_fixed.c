@@ -18,29 +18,6 @@ struct world {
     int alarm_set, is_sink;
 };
 
-struct input {
-    const uint8_t *data;
-    size_t left;
-};
-
-static uint8_t byte(struct input *input)
-{
-    if (input->left == 0) {
-        return 0;
-    }
-    input->left--;
-    return *input->data++;
-}
-
-static size_t bytes(struct input *input, uint8_t *to, size_t count)
-{
-    count = count < input->left ? count : input->left;
-    memcpy(to, input->data, count);
-    input->data += count;
-    input->left -= count;
-    return count;
-}
-
 /* ---- what the mote asks ---- */
 
 static void transmit(void *context, mh_node_id destination, const uint8_t *frame, size_t length)

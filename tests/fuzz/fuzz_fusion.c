@@ -10,34 +10,16 @@
 
 enum { HEADS = 2, EVENTS_MAX = 300, SAMPLES_MAX = 6, BYTES_MAX = 4 * (MH_STATES_MAX + MH_PACKED_SIZE(MH_STATES_MAX)) };
 
-struct input {
-    const uint8_t *data;
-    size_t left;
-};
-
 static const struct mh_tracker *tracker;
 static struct mh_cv heads[HEADS];
 static struct mh_fusion_centre centre;
 static mh_tick now;
 
-static uint8_t byte(struct input *input)
-{
-    if (input->left == 0) {
-        return 0;
-    }
-    input->left--;
-    return *input->data++;
-}
-
 /* As many bytes as there are, at most `most`; zeros behind them. */
-static size_t bytes_of(struct input *input, uint8_t *bytes, size_t most)
+static size_t bytes_of(struct input *input, uint8_t *to, size_t most)
 {
-    const size_t length = input->left < most ? input->left : most;
-    memset(bytes, 0, most);
-    memcpy(bytes, input->data, length);
-    input->data += length;
-    input->left -= length;
-    return length;
+    memset(to, 0, most);
+    return bytes(input, to, most);
 }
 
 static void check(const struct mh_estimate *estimate)

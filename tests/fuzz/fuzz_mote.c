@@ -44,11 +44,6 @@ struct world {
     mh_node_id sink;
 };
 
-struct input {
-    const uint8_t *data;
-    size_t left;
-};
-
 static void transmit(void *context, mh_node_id destination, const uint8_t *frame, size_t length)
 {
     (void)context;
@@ -74,24 +69,6 @@ static void report(void *context, const struct mh_estimate *estimate)
 
 /* The sample comes when the fuzzer has it come. */
 static void sense(void *context) { (void)context; }
-
-static uint8_t byte(struct input *input)
-{
-    if (input->left == 0) {
-        return 0;
-    }
-    input->left--;
-    return *input->data++;
-}
-
-static size_t bytes(struct input *input, uint8_t *to, size_t count)
-{
-    count = count < input->left ? count : input->left;
-    memcpy(to, input->data, count);
-    input->data += count;
-    input->left -= count;
-    return count;
-}
 
 static void ring(struct world *world)
 {

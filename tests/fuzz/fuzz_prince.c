@@ -17,29 +17,6 @@ struct world {
     int sampling;
 };
 
-struct input {
-    const uint8_t *data;
-    size_t left;
-};
-
-static uint8_t byte(struct input *input)
-{
-    if (input->left == 0) {
-        return 0;
-    }
-    input->left--;
-    return *input->data++;
-}
-
-static size_t bytes(struct input *input, uint8_t *to, size_t count)
-{
-    count = count < input->left ? count : input->left;
-    memcpy(to, input->data, count);
-    input->data += count;
-    input->left -= count;
-    return count;
-}
-
 static int32_t metres(struct input *input) { return (byte(input) - 128) * 1000; }
 
 /* ---- what the mote asks ---- */

@@ -27,20 +27,6 @@ union state {
     struct mh_acoustic acoustic;
 };
 
-struct input {
-    const uint8_t *data;
-    size_t left;
-};
-
-static uint8_t byte(struct input *input)
-{
-    if (input->left == 0) {
-        return 0;
-    }
-    input->left--;
-    return *input->data++;
-}
-
 static void check(const struct mh_estimate *estimate)
 {
     const struct mh_sym2 c = estimate->covariance;
