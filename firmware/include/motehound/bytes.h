@@ -5,7 +5,6 @@
 #include "motehound/real.h"
 
 #include <stdint.h>
-#include <string.h>
 
 /* Each writes or reads at *at and moves it on. Signed numbers are in two's complement. */
 static inline void mh_put_u16(uint8_t **at, uint16_t value)
@@ -44,20 +43,8 @@ static inline int32_t mh_get_i32(const uint8_t **at)
     return bits > INT32_MAX ? -(int32_t)(UINT32_MAX - bits) - 1 : (int32_t)bits;
 }
 
-/* mh_real as IEEE 754 binary32 */
-static inline void mh_put_real(uint8_t **at, mh_real value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    mh_put_u32(at, bits);
-}
-
-static inline mh_real mh_get_real(const uint8_t **at)
-{
-    const uint32_t bits = mh_get_u32(at);
-    mh_real value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
+/* mh_real as IEEE 754 binary32, whatever it is on this machine */
+static inline void mh_put_real(uint8_t **at, mh_real value) { mh_put_u32(at, mh_real_to_ieee(value)); }
+static inline mh_real mh_get_real(const uint8_t **at) { return mh_real_from_ieee(mh_get_u32(at)); }
 
 #endif

@@ -30,17 +30,23 @@ struct mh_region {
     int32_t x_min_mm, x_max_mm, y_min_mm, y_max_mm;
 };
 
-/* (cos angle, sin angle) for |angle| <= pi, each within 3e-6: by polynomials of half the angle, without branches, so that a loop of them is
+/* (cos angle, sin angle) for |angle| <= pi, each within 3e-6 (fixed point: 5e-5): by polynomials of half the angle, without branches, so that a loop of them is
  * vectorised where the processor can. 16 multiplications. */
 static inline struct mh_vec2 mh_direction(mh_real angle)
 {
-    const mh_real half = 0.5f * angle, square = half * half;
+    const mh_real half = angle / 2, square = mh_squared(half);
     const mh_real sine =
-        half * (9.99996616e-1f + square * (-1.66648284e-1f + square * (8.30632523e-3f - square * 1.83636540e-4f)));
+        mh_mul(half, MH_REAL(9.99996616e-1f) +
+                         mh_mul(square,
+                                MH_REAL(-1.66648284e-1f) +
+                                    mh_mul(square, MH_REAL(8.30632523e-3f) - mh_mul(square, MH_REAL(1.83636540e-4f)))));
     const mh_real cosine =
-        9.99999953e-1f +
-        square * (-4.99999053e-1f + square * (4.16635847e-2f + square * (-1.38537043e-3f + square * 2.31539316e-5f)));
-    const struct mh_vec2 direction = {cosine * cosine - sine * sine, 2.0f * sine * cosine};
+        MH_REAL(9.99999953e-1f) +
+        mh_mul(square, MH_REAL(-4.99999053e-1f) +
+                           mh_mul(square, MH_REAL(4.16635847e-2f) +
+                                              mh_mul(square, MH_REAL(-1.38537043e-3f) +
+                                                                 mh_mul(square, MH_REAL(2.31539316e-5f)))));
+    const struct mh_vec2 direction = {mh_squared(cosine) - mh_squared(sine), 2 * mh_mul(sine, cosine)};
     return direction;
 }
 
@@ -64,7 +70,8 @@ uint32_t mh_square_root(uint64_t square);
 /* place - origin in metres, horizontal part. */
 static inline struct mh_vec2 mh_place_relative(const struct mh_place *place, const struct mh_place *origin)
 {
-    struct mh_vec2 v = {(mh_real)(place->x_mm - origin->x_mm) * 0.001f, (mh_real)(place->y_mm - origin->y_mm) * 0.001f};
+    struct mh_vec2 v = {mh_real_from_ratio(place->x_mm - origin->x_mm, 1000),
+                        mh_real_from_ratio(place->y_mm - origin->y_mm, 1000)};
     return v;
 }
 

@@ -45,9 +45,9 @@ static inline struct mh_vec2 mh_centroid(const struct mh_measurement *measuremen
         sum.x += at.x;
         sum.y += at.y;
     }
-    sum.x /= (mh_real)count;
-    sum.y /= (mh_real)count;
-    return sum;
+    const struct mh_vec2 mean = {mh_div(sum.x, mh_real_from_int((int32_t)count)),
+                                 mh_div(sum.y, mh_real_from_int((int32_t)count))};
+    return mean;
 }
 
 #endif

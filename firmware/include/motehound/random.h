@@ -33,10 +33,14 @@ static inline void mh_random_init(struct mh_random *random, uint32_t seed)
     }
 }
 
-/* Uniform in [0, 1), a multiple of 2^-24. */
+/* Uniform in [0, 1), a multiple of 2^-24 (fixed point: of 2^-16). */
 static inline mh_real mh_random_unit(struct mh_random *random)
 {
+#if MH_REAL_FIXED
+    return (mh_real)(mh_random_word(random) >> (32 - MH_REAL_BITS));
+#else
     return (mh_real)(int32_t)(mh_random_word(random) >> 8) * (1.0f / 16777216.0f);
+#endif
 }
 
 /* Uniform in 0 .. count - 1; count 1 to 65,535, and no number more probable than another by more than count / 2^32. */

@@ -17,7 +17,7 @@ static inline int32_t mh_ticks_between(mh_tick earlier, mh_tick later) { return 
 /* The same in seconds. */
 static inline mh_real mh_seconds_between(mh_tick earlier, mh_tick later)
 {
-    return (mh_real)mh_ticks_between(earlier, later) * (1.0f / (mh_real)MH_TICKS_PER_S);
+    return mh_real_from_ratio(mh_ticks_between(earlier, later), (int32_t)MH_TICKS_PER_S);
 }
 
 /* True if a is strictly before b. */

@@ -2,8 +2,14 @@
 
 static int32_t millimetres(int32_t origin_mm, mh_real offset_m)
 {
+#if MH_REAL_FIXED
+    const int64_t wide = (int64_t)offset_m * 1000;
+    const int32_t offset_mm = (int32_t)((wide < 0 ? wide - MH_REAL_ONE / 2 : wide + MH_REAL_ONE / 2) / MH_REAL_ONE);
+#else
     const mh_real mm = mh_clamp(offset_m * 1000.0f, -2.0f * MH_COORDINATE_MAX_MM, 2.0f * MH_COORDINATE_MAX_MM);
-    const int64_t sum = (int64_t)origin_mm + (int32_t)(mm < 0 ? mm - 0.5f : mm + 0.5f);
+    const int32_t offset_mm = mh_real_round(mm);
+#endif
+    const int64_t sum = (int64_t)origin_mm + offset_mm;
     return (int32_t)(sum > MH_COORDINATE_MAX_MM    ? MH_COORDINATE_MAX_MM
                      : sum < -MH_COORDINATE_MAX_MM ? -MH_COORDINATE_MAX_MM
                                                    : sum);

@@ -1,0 +1,72 @@
+/* The fixed-point scalar against what it stands for, computed in float, and against integers where those are exact. */
+#include "motehound/geometry.h"
+#include "port.h"
+
+#include <math.h>
+#include <unity.h>
+
+void setUp(void) {}
+void tearDown(void) {}
+
+#define ULP (1.0f / 65536)
+
+static void test_constants_are_rounded_to_nearest(void)
+{
+    TEST_ASSERT_EQUAL_INT32(65536, MH_REAL(1.0f));
+    TEST_ASSERT_EQUAL_INT32(-6554, MH_REAL(-0.1f));
+}
+
+static void test_products_and_quotients_are_rounded_and_saturate(void)
+{
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(-3.75f), mh_mul(MH_REAL(1.5f), MH_REAL(-2.5f)));
+    TEST_ASSERT_EQUAL_INT32(1, mh_mul(MH_REAL(0.5f), 1)); /* half of the last place: up */
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(-0.6f), mh_div(MH_REAL(1.5f), MH_REAL(-2.5f)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL_INFINITE, mh_mul(MH_REAL(200.0f), MH_REAL(200.0f)));
+    TEST_ASSERT_EQUAL_INT32(-MH_REAL_INFINITE, mh_div(MH_REAL(-200.0f), MH_REAL(0.001f)));
+    TEST_ASSERT_FALSE(mh_finite(mh_div(0, 0)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL_INFINITE, mh_add(MH_REAL_INFINITE, MH_REAL(-5.0f)));
+}
+
+static void test_functions_are_as_near_as_said(void)
+{
+    for (mh_real at = MH_REAL(0.01f); at < MH_REAL(10.0f); at += MH_REAL(0.37f)) {
+        const float x = mh_real_to_float(at);
+        const float root = (float)sqrtf(x), logarithm = (float)logf(x), power = (float)expf(x);
+        TEST_ASSERT_FLOAT_WITHIN(ULP, root, mh_real_to_float(mh_sqrt(at)));
+        TEST_ASSERT_FLOAT_WITHIN(ULP, logarithm, mh_real_to_float(mh_log(at)));
+        TEST_ASSERT_FLOAT_WITHIN(ULP + 3e-6f * power, power,
+                                 mh_real_to_float(mh_exp(at))); /* the reference's error too */
+        TEST_ASSERT_FLOAT_WITHIN(ULP, 1 / power, mh_real_to_float(mh_exp(-at)));
+        const float angle = (float)atan2f(x - 5, 2 - x);
+        TEST_ASSERT_FLOAT_WITHIN(3 * ULP, angle, mh_real_to_float(mh_atan2(at - MH_REAL(5.0f), MH_REAL(2.0f) - at)));
+    }
+    TEST_ASSERT_FALSE(mh_finite(mh_sqrt(-1)));
+    TEST_ASSERT_FALSE(mh_finite(mh_log(0)));
+    TEST_ASSERT_FALSE(mh_finite(mh_exp(MH_REAL(11.0f))));
+}
+
+static void test_conversions(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0xBFC00000u, mh_real_to_ieee(MH_REAL(-1.5f)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(-1.5f), mh_real_from_ieee(0xBFC00000u));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL_INFINITE, mh_real_from_ieee(0x49742400u)); /* 1e6 */
+    TEST_ASSERT_EQUAL_INT32(0, mh_real_from_ieee(0));
+    TEST_ASSERT_EQUAL_INT32(MH_Q20_ONE, mh_q20_from_real(mh_q20_to_real(MH_Q20_ONE)));
+    TEST_ASSERT_EQUAL_INT32(-3, mh_real_round(MH_REAL(-2.6f)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(0.25f), mh_real_from_ratio(250, 1000));
+    const struct mh_place origin = {1000, 2000, 3},
+                          place = mh_place_from_offset(&origin, (struct mh_vec2){MH_REAL(-1.5f), MH_REAL(0.25f)});
+    TEST_ASSERT_EQUAL_INT32(-500, place.x_mm);
+    TEST_ASSERT_EQUAL_INT32(2250, place.y_mm);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_constants_are_rounded_to_nearest);
+    RUN_TEST(test_products_and_quotients_are_rounded_and_saturate);
+    RUN_TEST(test_functions_are_as_near_as_said);
+    RUN_TEST(test_conversions);
+    port_exit(UNITY_END() > 0);
+    return 0;
+}
