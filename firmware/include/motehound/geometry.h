@@ -50,6 +50,28 @@ static inline struct mh_vec2 mh_direction(mh_real angle)
     return direction;
 }
 
+/* b - a */
+static inline struct mh_vec2 mh_vec2_between(struct mh_vec2 a, struct mh_vec2 b)
+{
+    const struct mh_vec2 difference = {mh_add(b.x, -a.x), mh_add(b.y, -a.y)};
+    return difference;
+}
+
+/* a + factor b */
+static inline struct mh_vec2 mh_vec2_along(struct mh_vec2 a, mh_real factor, struct mh_vec2 b)
+{
+    const struct mh_vec2 sum = {mh_add(a.x, mh_mul(factor, b.x)), mh_add(a.y, mh_mul(factor, b.y))};
+    return sum;
+}
+
+static inline mh_wide mh_vec2_dot(struct mh_vec2 a, struct mh_vec2 b)
+{
+    return mh_wide_mul(a.x, b.x) + mh_wide_mul(a.y, b.y);
+}
+
+static inline mh_wide mh_vec2_square(struct mh_vec2 a) { return mh_vec2_dot(a, a); }
+static inline mh_real mh_vec2_length(struct mh_vec2 a) { return mh_wide_sqrt(mh_vec2_square(a)); }
+
 /* True if mm may be a coordinate of a place. */
 static inline bool mh_coordinate_valid(int32_t mm) { return mm >= -MH_COORDINATE_MAX_MM && mm <= MH_COORDINATE_MAX_MM; }
 

@@ -41,6 +41,13 @@ static inline mh_real mh_add(mh_real a, mh_real b)
 mh_real mh_mul(mh_real a, mh_real b);
 mh_real mh_div(mh_real a, mh_real b);
 
+/* A product of two reals, exact, with 32 fractional bits; two of them may be added. */
+typedef int64_t mh_wide;
+static inline mh_wide mh_wide_mul(mh_real a, mh_real b) { return (int64_t)a * b; }
+mh_real mh_wide_div(mh_wide a, mh_real b);
+mh_real mh_wide_sqrt(mh_wide a);
+static inline mh_real mh_wide_to_real(mh_wide a) { return mh_real_saturate((a + MH_REAL_ONE / 2) >> MH_REAL_BITS); }
+
 mh_real mh_sqrt(mh_real a);
 mh_real mh_exp(mh_real a);
 mh_real mh_log(mh_real a);
@@ -49,6 +56,9 @@ mh_real mh_atan2(mh_real y, mh_real x);
 /* Integers as reals: a, and a / b for b > 0. */
 mh_real mh_real_from_int(int32_t a);
 mh_real mh_real_from_ratio(int32_t a, int32_t b);
+
+/* The integer a b, its fraction cut off, for a constant b > 0; saturated. */
+int32_t mh_real_times(mh_real a, int32_t b);
 
 /* The integer nearest to a. */
 static inline int32_t mh_real_round(mh_real a)

@@ -15,6 +15,13 @@ typedef float mh_real;
 
 static inline mh_real mh_mul(mh_real a, mh_real b) { return a * b; }
 static inline mh_real mh_div(mh_real a, mh_real b) { return a / b; }
+static inline mh_real mh_add(mh_real a, mh_real b) { return a + b; }
+
+typedef mh_real mh_wide;
+static inline mh_wide mh_wide_mul(mh_real a, mh_real b) { return a * b; }
+static inline mh_real mh_wide_div(mh_wide a, mh_real b) { return a / b; }
+static inline mh_real mh_wide_sqrt(mh_wide a) { return sqrtf(a); }
+static inline mh_real mh_wide_to_real(mh_wide a) { return a; }
 
 static inline mh_real mh_abs(mh_real a) { return fabsf(a); }
 static inline mh_real mh_sqrt(mh_real a) { return sqrtf(a); }
@@ -28,6 +35,9 @@ static inline bool mh_finite(mh_real a) { return mh_abs(a) <= MH_REAL_MAX; }
 /* Integers as reals: a, and a / b for a constant b > 0 (one multiplication). */
 static inline mh_real mh_real_from_int(int32_t a) { return (mh_real)a; }
 #define mh_real_from_ratio(a, b) ((mh_real)(int32_t)(a) * (1.0f / (mh_real)(b)))
+
+/* The integer a b, its fraction cut off, for a constant b > 0; |a b| below 2e9. */
+#define mh_real_times(a, b) ((int32_t)((a) * (mh_real)(b)))
 
 /* The integer nearest to a; |a| below 2e9. */
 static inline int32_t mh_real_round(mh_real a) { return (int32_t)(a < 0 ? a - 0.5f : a + 0.5f); }

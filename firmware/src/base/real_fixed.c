@@ -21,13 +21,31 @@ mh_real mh_div(mh_real a, mh_real b)
     return negative ? -saturated : saturated;
 }
 
-mh_real mh_sqrt(mh_real a)
+/* The fractional bits of a quotient are those of a less those of b. */
+mh_real mh_wide_div(mh_wide a, mh_real b)
+{
+    if (b == 0) {
+        return a < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
+    }
+    const bool negative = (a < 0) != (b < 0);
+    const uint64_t over = a < 0 ? 0 - (uint64_t)a : (uint64_t)a, under = (uint32_t)mh_abs(b);
+    const uint64_t quotient = (over + under / 2) / under;
+    const mh_real saturated = quotient > MH_REAL_MAX ? MH_REAL_INFINITE : (mh_real)quotient;
+    return negative ? -saturated : saturated;
+}
+
+mh_real mh_sqrt(mh_real a) { return mh_wide_sqrt((mh_wide)a * MH_REAL_ONE); }
+
+mh_real mh_wide_sqrt(mh_wide a)
 {
     if (a < 0) {
         return -MH_REAL_INFINITE;
     }
-    uint64_t rest = (uint64_t)a << MH_REAL_BITS, root = 0;
-    for (uint64_t bit = (uint64_t)1 << 46; bit > 0; bit >>= 2) {
+    uint64_t rest = (uint64_t)a, root = 0, bit = (uint64_t)1 << 62;
+    while (bit > rest) {
+        bit >>= 2;
+    }
+    for (; bit > 0; bit >>= 2) {
         if (rest >= root + bit) {
             rest -= root + bit;
             root = (root >> 1) + bit;
@@ -35,7 +53,7 @@ mh_real mh_sqrt(mh_real a)
             root >>= 1;
         }
     }
-    return (mh_real)(rest > root ? root + 1 : root); /* to nearest */
+    return mh_real_saturate((int64_t)(rest > root ? root + 1 : root)); /* to nearest */
 }
 
 /* 2^(whole + part) with part within +-1/2, by the series of e^x. */
@@ -111,6 +129,12 @@ mh_real mh_real_from_ratio(int32_t a, int32_t b)
 {
     const int64_t wide = (int64_t)a * MH_REAL_ONE;
     return mh_real_saturate((wide + (wide < 0 ? -b / 2 : b / 2)) / b);
+}
+
+int32_t mh_real_times(mh_real a, int32_t b)
+{
+    const int64_t product = (int64_t)a * b / MH_REAL_ONE;
+    return product > INT32_MAX ? INT32_MAX : product < INT32_MIN ? INT32_MIN : (int32_t)product;
 }
 
 uint32_t mh_real_to_ieee(mh_real a)

@@ -27,6 +27,22 @@ static void test_products_and_quotients_are_rounded_and_saturate(void)
     TEST_ASSERT_EQUAL_INT32(MH_REAL_INFINITE, mh_add(MH_REAL_INFINITE, MH_REAL(-5.0f)));
 }
 
+static void test_squared_lengths_do_not_end_where_reals_do(void)
+{
+    const struct mh_vec2 far = {MH_REAL(-3000.0f), MH_REAL(4000.0f)}, infinite = {MH_REAL_INFINITE, -MH_REAL_INFINITE};
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(5000.0f), mh_vec2_length(far));
+    TEST_ASSERT_TRUE(mh_vec2_square(far) < mh_wide_mul(MH_REAL(5000.1f), MH_REAL(5000.1f)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(-6250.0f), mh_wide_div(-mh_vec2_square(far), MH_REAL(4000.0f)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL_INFINITE, mh_wide_to_real(mh_vec2_square(far)));
+    TEST_ASSERT_EQUAL_INT32(MH_REAL(-0.75f), mh_wide_to_real(mh_wide_mul(MH_REAL(1.5f), MH_REAL(-0.5f))));
+    TEST_ASSERT_FALSE(mh_finite(mh_vec2_length(infinite)));
+    TEST_ASSERT_FALSE(mh_finite(mh_vec2_between(infinite, far).x));
+    TEST_ASSERT_FALSE(mh_finite(mh_vec2_along(far, MH_REAL(3000.0f), far).y));
+    TEST_ASSERT_EQUAL_INT32(-2500, mh_real_times(MH_REAL(-2.5f), 1000));
+    TEST_ASSERT_EQUAL_INT32(0, mh_real_times(MH_REAL(-0.9f), 1));
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, mh_real_times(MH_REAL(30000.0f), 100000));
+}
+
 static void test_functions_are_as_near_as_said(void)
 {
     for (mh_real at = MH_REAL(0.01f); at < MH_REAL(10.0f); at += MH_REAL(0.37f)) {
@@ -65,6 +81,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_constants_are_rounded_to_nearest);
     RUN_TEST(test_products_and_quotients_are_rounded_and_saturate);
+    RUN_TEST(test_squared_lengths_do_not_end_where_reals_do);
     RUN_TEST(test_functions_are_as_near_as_said);
     RUN_TEST(test_conversions);
     port_exit(UNITY_END() > 0);

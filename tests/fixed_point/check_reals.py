@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Looks for expressions that mean something with mh_real as float and something else with mh_real as a fixed-point number, in clang's syntax trees of the
+library's fixed-point sources: mh_real is a type of its own there, though the compiler takes it for the integer that it is.
+
+    check_reals.py CLANG SOURCE... -- FLAG...
+
+Each finding is a line FILE:LINE: what. Exit status 1 if there are any."""
+
+import json
+import re
+import subprocess
+import sys
+
+PASS_THROUGH = ("ParenExpr", "ConstantExpr")
+WIDE = ("int64_t", "long", "long long", "uint64_t", "unsigned long", "unsigned long long")
+
+
+class Place:
+    """Where the reader is: a tree names a file or line only where it differs from the one named before."""
+
+    file, line = None, 0
+
+    def read(self, at):
+        for part in ("spellingLoc", "expansionLoc"):
+            if part in at:
+                self.read(at[part])
+        self.file = at.get("file", self.file)
+        self.line = at.get("line", self.line)
+
+
+def bare(type_of):
+    return re.sub(r"\b(const|volatile) ?", "", type_of).strip()
+
+
+def parameters(function_type):
+    """'mh_real (mh_real, int)' -> ('mh_real', ['mh_real', 'int'])"""
+    result, _, rest = function_type.partition("(")
+    if rest.startswith("*"):  # a pointer to a function
+        result, rest = result, rest.partition("(")[2]
+    parts, depth = [""], 0
+    for char in rest:
+        depth += (char == "(") - (char == ")")
+        if depth < 0:
+            break
+        if char == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += char
+    return bare(result), [bare(part) for part in parts]
+
+
+class Reader:
+    def __init__(self):
+        self.place, self.fields, self.found = Place(), {}, set()
+
+    def say(self, node, what):
+        self.found.add("%s:%d: %s" % (node["_file"], node["_line"], what))
+
+    def mark(self, node):
+        """Gives each node its place, in the order of the text, and notes the structures."""
+        for key, value in list(node.items()):
+            if key == "loc" or key == "range":
+                if key == "range":
+                    self.place.read(value.get("begin", {}))
+                    node["_file"], node["_line"] = self.place.file, self.place.line
+                    self.place.read(value.get("end", {}))
+                else:
+                    self.place.read(value)
+            elif key == "inner":
+                for child in value:
+                    self.mark(child)
+        if node.get("kind") == "RecordDecl" and "name" in node:
+            fields = [bare(f["type"]["qualType"]) for f in node.get("inner", []) if f.get("kind") == "FieldDecl"]
+            if fields:
+                self.fields["struct " + node["name"]] = fields
+
+    def real(self, node):
+        """True, False, or None for what may be either: nought."""
+        kind, inner = node.get("kind"), node.get("inner", [])
+        if kind in PASS_THROUGH:
+            return self.real(inner[0])
+        if kind == "IntegerLiteral":
+            return None if node["value"] == "0" else False
+        if kind == "ImplicitValueInitExpr":
+            return None
+        if kind == "UnaryOperator" and node["opcode"] in "+-":
+            return self.real(inner[0])
+        if kind == "ImplicitCastExpr" and node.get("castKind") in ("NoOp", "LValueToRValue"):
+            return bare(node["type"]["qualType"]) == "mh_real" or self.real(inner[0])
+        if kind == "BinaryOperator" and node["opcode"] in ("+", "-", "*", "/"):
+            return True if True in (self.real(inner[0]), self.real(inner[1])) else False
+        if kind == "ConditionalOperator":
+            parts = [self.real(inner[1]), self.real(inner[2])]
+            return True if True in parts else None if parts == [None, None] else False
+        return bare(node.get("type", {}).get("qualType", "")) == "mh_real"
+
+    def taken(self, node, wanted, where):
+        """node as a value of the type `wanted`."""
+        if wanted == "mh_real" and self.real(node) is False:
+            self.say(node, "an integer as mh_real (%s)" % where)
+
+    def check(self, node, returns=None):
+        kind, inner = node.get("kind"), node.get("inner", [])
+        if kind == "FunctionDecl":
+            returns = parameters(node["type"]["qualType"])[0]
+        elif kind in ("BinaryOperator", "CompoundAssignOperator"):
+            left, right, op = self.real(inner[0]), self.real(inner[1]), node["opcode"]
+            if op in ("*", "/", "*=", "/=") and left and right:
+                self.say(node, "mh_real %s mh_real: mh_mul, mh_div" % op[0])
+            elif op in ("/",) and right:
+                self.say(node, "an integer / mh_real")
+            elif op in ("+", "-", "<", ">", "<=", ">=", "==", "!=", "+=", "-=", "=") and {left, right} == {True, False}:
+                self.say(node, "mh_real %s integer" % op)
+        elif kind == "ConditionalOperator":
+            if {self.real(inner[1]), self.real(inner[2])} == {True, False}:
+                self.say(node, "mh_real or integer")
+        elif kind == "ImplicitCastExpr" and node.get("castKind") == "IntegralCast" and self.real(inner[0]):
+            if bare(node["type"]["qualType"]) not in WIDE:
+                self.say(node, "mh_real becomes %s" % node["type"]["qualType"])
+        elif kind == "CStyleCastExpr" and node.get("castKind") not in ("FloatingToIntegral", "ToVoid"):
+            wanted = bare(node["type"]["qualType"])
+            if wanted == "mh_real":
+                self.taken(inner[0], wanted, "cast")
+            elif self.real(inner[0]) and wanted not in WIDE:
+                self.say(node, "mh_real cast to %s" % node["type"]["qualType"])
+        elif kind == "VarDecl" and "init" in node and inner:
+            wanted = bare(node["type"]["qualType"])
+            self.taken(inner[-1], wanted, "initialiser")
+            if wanted != "mh_real" and wanted not in WIDE and self.real(inner[-1]):
+                self.say(node, "mh_real becomes %s" % wanted)
+        elif kind == "InitListExpr":
+            wanted = bare(node["type"]["qualType"])
+            fields = self.fields.get(wanted) or ["mh_real"] * len(inner) if wanted.startswith("mh_real[") else self.fields.get(wanted, [])
+            for field, value in zip(fields, inner):
+                self.taken(value, field, "initialiser")
+                if field != "mh_real" and field not in WIDE and self.real(value):
+                    self.say(value, "mh_real becomes %s" % field)
+        elif kind == "CallExpr":
+            pointer = bare(inner[0]["type"]["qualType"])
+            for value, wanted in zip(inner[1:], parameters(pointer)[1]):
+                self.taken(value, wanted, "argument")
+                if wanted != "mh_real" and wanted not in WIDE and self.real(value):
+                    self.say(value, "mh_real becomes %s" % wanted)
+        elif kind == "ReturnStmt" and inner:
+            self.taken(inner[0], returns, "result")
+            if returns != "mh_real" and returns not in WIDE and self.real(inner[0]):
+                self.say(inner[0], "mh_real becomes %s" % returns)
+        for child in inner:
+            if child:
+                self.check(child, returns)
+
+
+def main():
+    at = sys.argv.index("--")
+    clang, sources, flags = sys.argv[1], sys.argv[2:at], sys.argv[at + 1 :]
+    found = set()
+    for source in sources:
+        dump = subprocess.run([clang, "-std=c99", "-fsyntax-only", "-Xclang", "-ast-dump=json", "-DMH_REAL_FIXED=1", *flags, source],
+                              stdout=subprocess.PIPE, check=True).stdout
+        reader = Reader()
+        tree = json.loads(dump)
+        reader.mark(tree)
+        reader.check(tree)
+        # what mh_real is made of takes it for an integer
+        found |= {line for line in reader.found if not re.search(r"/real(_fixed)?\.[ch]:", line)}
+    for line in sorted(found):
+        print(line)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
