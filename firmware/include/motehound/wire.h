@@ -164,6 +164,8 @@ enum mh_status mh_wire_decode(mh_wire_types *types, const uint8_t *frame, size_t
 
 /* ITU-T CRC-16 as IEEE 802.15.4 uses it: polynomial x^16 + x^12 + x^5 + 1, reflected, initial value 0. */
 uint16_t mh_wire_fcs(const uint8_t *bytes, size_t length);
+/* The same byte by byte: that of what came before, and one more byte. */
+uint16_t mh_wire_fcs_next(uint16_t fcs, uint8_t byte);
 
 /* A measurement as the report that its node puts on the air (hops 0), and back. */
 void mh_report_from_measurement(const struct mh_measurement *measurement, mh_report_t *report);

@@ -5,14 +5,19 @@
 #define FINGERPRINT_BYTES 8
 #define FCS_BYTES 2
 
+uint16_t mh_wire_fcs_next(uint16_t fcs, uint8_t byte)
+{
+    /* one byte of the reflected division at once: the quotient's bits depend on each other only at distance 4 */
+    uint8_t quotient = (uint8_t)(byte ^ (fcs & 0xFFu));
+    quotient = (uint8_t)(quotient ^ (quotient << 4));
+    return (uint16_t)((fcs >> 8) ^ ((uint16_t)quotient << 8) ^ ((uint16_t)quotient << 3) ^ (quotient >> 4));
+}
+
 uint16_t mh_wire_fcs(const uint8_t *bytes, size_t length)
 {
     uint16_t fcs = 0;
     for (size_t i = 0; i < length; i++) {
-        /* one byte of the reflected division at once: the quotient's bits depend on each other only at distance 4 */
-        uint8_t quotient = (uint8_t)(bytes[i] ^ (fcs & 0xFFu));
-        quotient = (uint8_t)(quotient ^ (quotient << 4));
-        fcs = (uint16_t)((fcs >> 8) ^ ((uint16_t)quotient << 8) ^ ((uint16_t)quotient << 3) ^ (quotient >> 4));
+        fcs = mh_wire_fcs_next(fcs, bytes[i]);
     }
     return fcs;
 }
