@@ -1,10 +1,11 @@
 /* The painted stack, for ports whose stack grows downwards through memory that nothing else uses.
  *
- * A port defines STACK_POINTER() and STACK_LIMIT, the lowest byte of the stack, and includes this once. */
+ * A port defines STACK_POINTER(), STACK_LIMIT, the lowest byte of the stack, and STACK_TOP, the byte above its highest, and includes this once. */
 #ifndef STACK_PAINT_H
 #define STACK_PAINT_H
 
 #define STACK_PATTERN 0xC5
+#define STACK_GUARD 4 /* bytes at the limit that must stay painted */
 
 /* Bytes left alone below the stack pointer, so that the painter's own frame is safe; they count as used. */
 #define STACK_MARGIN 16
@@ -26,6 +27,18 @@ __attribute__((noinline)) uint32_t port_stack_used(void)
         p++;
     }
     return (uint32_t)(stack_painted_from - p);
+}
+
+uint32_t port_stack_deepest(void) { return port_stack_used() + (uint32_t)(STACK_TOP - stack_painted_from); }
+
+bool port_stack_intact(void)
+{
+    const volatile uint8_t *limit = STACK_LIMIT;
+    uint8_t painted = 0;
+    for (uint8_t i = 0; i < STACK_GUARD; i++) {
+        painted = (uint8_t)(painted + (limit[i] == STACK_PATTERN));
+    }
+    return painted == STACK_GUARD;
 }
 
 #endif

@@ -1,10 +1,12 @@
 /* RV32: start-up, console and exit through semihosting ("RISC-V Semihosting", the same operations as Arm's). */
 #include "port.h"
+#include "board.h"
 
 /* -march=..._zicsr would select another C library, so the instructions that touch control registers are allowed here only */
 __asm__(".option arch, +zicsr");
 
-extern uint8_t __stack_limit[]; /* from the linker script */
+/* from the linker script */
+extern uint8_t __stack_limit[], __stack_top[], __data_start[], end[];
 
 int main(void);
 
@@ -25,12 +27,59 @@ static void semihost(uint32_t operation, const void *argument)
 
 #define STACK_POINTER() ((uint8_t *)__builtin_frame_address(0))
 #define STACK_LIMIT __stack_limit
+#define STACK_TOP __stack_top
 #include "stack_paint.h"
 
-__attribute__((used, aligned(4), interrupt)) void trap(void)
+uint32_t port_static_ram(void) { return (uint32_t)(end - __data_start); }
+
+__attribute__((weak)) void port_fault(enum port_fault_cause cause, uint32_t address)
 {
+    (void)cause;
+    (void)address;
     port_puts("processor fault\n");
     port_exit(PORT_FAULT);
+}
+
+/* QEMU's test device ("sifive_test") */
+void port_reset(void)
+{
+    *(volatile uint32_t *)0x100000u = 0x7777;
+    for (;;) {}
+}
+
+__attribute__((used)) static void fault_of(const uint8_t *sp, uint32_t address)
+{
+    port_fault(sp < __stack_limit + 64 ? PORT_FAULT_STACK : PORT_FAULT_PROCESSOR, address);
+}
+
+/* What the drivers handle, in images that have them. */
+static void unexpected(void) { port_fault(PORT_FAULT_PROCESSOR, 0); }
+__attribute__((weak, alias("unexpected"))) void uart_interrupt(void);
+__attribute__((weak, alias("unexpected"))) void timer_interrupt(void);
+
+__attribute__((used, aligned(4), interrupt)) static void interrupt_of(void)
+{
+    uint32_t cause;
+    __asm__ volatile("csrr %0, mcause" : "=r"(cause));
+    if ((cause & 0xFF) == 7) {
+        timer_interrupt();
+    } else {
+        uart_interrupt();
+    }
+}
+
+/* An interrupt, or a fault: then the stack may be used up, so it begins anew. */
+__attribute__((naked, used, aligned(4))) static void trap(void)
+{
+    __asm__ volatile("csrw mscratch, t0\n\t"
+                     "csrr t0, mcause\n\t"
+                     "bgez t0, 1f\n\t"
+                     "csrr t0, mscratch\n\t"
+                     "j interrupt_of\n\t"
+                     "1: mv a0, sp\n\t"
+                     "csrr a1, mepc\n\t"
+                     "la sp, __stack_top\n\t"
+                     "j fault_of");
 }
 
 __attribute__((naked, section(".init"), used)) void _start(void)
@@ -41,6 +90,11 @@ __attribute__((naked, section(".init"), used)) void _start(void)
                      "la sp, __stack_top\n"
                      "la t0, trap\n"
                      "csrw mtvec, t0\n"
+                     /* the code, 2 MB from 0x80000000, may be read and run, not written: whoever tries faults */
+                     "li t0, (0x80000000 | (0x200000 - 1)) >> 2 & ~(1 << 18)\n"
+                     "csrw pmpaddr0, t0\n"
+                     "li t0, 0x9D\n" /* locked, a power of two, run and read */
+                     "csrw pmpcfg0, t0\n"
                      "la a0, __data_start\n"
                      "la a1, __data_end\n"
                      "la a2, __data_load\n"
