@@ -1,7 +1,45 @@
 # What there is in fixed point (MH_REAL=fixed): sources under firmware/src, and unit tests under tests/unit/firmware. All else needs float.
 set(MOTEHOUND_FIXED_POINT_SOURCES
-  base/geometry base/real_fixed
+  base/geometry
+  base/real_fixed
+  estimate/followed
+  estimate/node_class
+  estimate/sensor
+  model/time_window
+  mote/head
+  mote/mote
+  protocol/clock
+  protocol/cluster
+  protocol/cluster_head
+  protocol/cluster_member
+  protocol/cluster_sink
+  protocol/collection
+  protocol/direct
+  protocol/election
+  protocol/geographic
+  protocol/geographic_collection
+  protocol/link
+  protocol/neighbours
+  protocol/parcel
+  protocol/rendezvous
+  protocol/shunned
+  protocol/vicinity
+  wire/wire
+  wire/wire_types
 )
 set(MOTEHOUND_FIXED_POINT_TESTS
+  test_clock
+  test_collection
+  test_geographic
+  test_geographic_collection
+  test_head
+  test_link
+  test_mote
+  test_neighbours
+  test_parcel
   test_real_fixed
+  test_rendezvous
+  test_sensor
+  test_vicinity
+  test_wire
 )

@@ -36,8 +36,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define MH_ELECTION_MARGIN_M 10.0f /* sacx: what the prediction may be off by before a member is missed */
-#define MH_ELECTION_HORIZON_MAX 40 /* instants */
+#define MH_ELECTION_MARGIN_M MH_REAL(10.0f) /* sacx: what the prediction may be off by before a member is missed */
+#define MH_ELECTION_HORIZON_MAX 40          /* instants */
 
 enum mh_election {
     MH_ELECTION_SACX,
@@ -55,7 +55,7 @@ struct mh_election_config {
     uint8_t horizon;         /* sac: 1 to MH_ELECTION_HORIZON_MAX instants */
     uint8_t least_answers;   /* sac, sacx, rho: 0 to MH_CLUSTER_MAX + 1 */
     mh_real sensing_range_m; /* 0.1 to 1e4 */
-    mh_real radio_range_m;   /* 0.1 to 1e5 */
+    mh_real radio_range_m;   /* 0.1 to 1e5 (fixed point: 32,767) */
     mh_tick interval;        /* between sampling instants, 1 to 3,600,000 ticks */
 };
 

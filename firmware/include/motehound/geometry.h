@@ -50,6 +50,8 @@ static inline struct mh_vec2 mh_direction(mh_real angle)
     return direction;
 }
 
+static inline bool mh_vec2_finite(struct mh_vec2 v) { return mh_finite(v.x) && mh_finite(v.y); }
+
 /* b - a */
 static inline struct mh_vec2 mh_vec2_between(struct mh_vec2 a, struct mh_vec2 b)
 {

@@ -37,7 +37,7 @@ static inline void mh_random_init(struct mh_random *random, uint32_t seed)
 static inline mh_real mh_random_unit(struct mh_random *random)
 {
 #if MH_REAL_FIXED
-    return (mh_real)(mh_random_word(random) >> (32 - MH_REAL_BITS));
+    return mh_real_from_bits((int32_t)(mh_random_word(random) >> (32 - MH_REAL_BITS)));
 #else
     return (mh_real)(int32_t)(mh_random_word(random) >> 8) * (1.0f / 16777216.0f);
 #endif

@@ -3,11 +3,11 @@
  * mh_real is float, or with MH_REAL_FIXED a 32-bit fixed-point number (real_float.h, real_fixed.h: range, resolution and rounding). What is
  * written in the words below works with both: +, - and comparisons are the language's own, a real times or divided by an integer too, but
  *
- *     MH_REAL(0.5f)    a constant, folded by the compiler
+ *     MH_REAL(0.5f)    a constant, folded by the compiler (MH_REAL_UPTO: or the largest real, if that is less)
  *     mh_mul, mh_div   product and quotient of two reals
  *     mh_add           a sum, where it may be too large (fixed point saturates, + does not)
  *     mh_wide          a product of two reals, or the sum of two of these, where it may be too large for a real: a squared length. To be compared, or made
- *                      a real again: mh_wide_mul, mh_wide_div (by a real), mh_wide_sqrt, mh_wide_to_real
+ *                      a real again: mh_wide_mul, mh_wide_div (by a real), mh_wide_ratio (by another), mh_wide_sqrt, mh_wide_to_real
  *
  * No double stands behind either on any target. Quantities keep their digits because positions are relative to an origin near the work (see
  * geometry.h). */

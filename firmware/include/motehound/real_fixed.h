@@ -17,6 +17,7 @@ typedef int32_t mh_real;
 #define MH_REAL_BITS 16
 #define MH_REAL_ONE ((mh_real)1 << MH_REAL_BITS)
 #define MH_REAL(constant) ((mh_real)((constant)*65536.0f + ((constant) < 0 ? -0.5f : 0.5f)))
+#define MH_REAL_UPTO(constant) MH_REAL((constant) < 32767.0f ? (constant) : 32767.0f)
 #define MH_REAL_MIN ((mh_real)1)
 #define MH_REAL_INFINITE INT32_MAX
 #define MH_REAL_MAX (INT32_MAX - 1)
@@ -45,6 +46,7 @@ mh_real mh_div(mh_real a, mh_real b);
 typedef int64_t mh_wide;
 static inline mh_wide mh_wide_mul(mh_real a, mh_real b) { return (int64_t)a * b; }
 mh_real mh_wide_div(mh_wide a, mh_real b);
+mh_real mh_wide_ratio(mh_wide a, mh_wide b);
 mh_real mh_wide_sqrt(mh_wide a);
 static inline mh_real mh_wide_to_real(mh_wide a) { return mh_real_saturate((a + MH_REAL_ONE / 2) >> MH_REAL_BITS); }
 
@@ -53,11 +55,17 @@ mh_real mh_exp(mh_real a);
 mh_real mh_log(mh_real a);
 mh_real mh_atan2(mh_real y, mh_real x);
 
+/* The real of these bits, bits / 65536. */
+static inline mh_real mh_real_from_bits(int32_t bits) { return bits; }
+
 /* Integers as reals: a, and a / b for b > 0. */
 mh_real mh_real_from_int(int32_t a);
 mh_real mh_real_from_ratio(int32_t a, int32_t b);
 
-/* The integer a b, its fraction cut off, for a constant b > 0; saturated. */
+/* a / b for a real and an integer b > 0. */
+static inline mh_real mh_real_over(mh_real a, int16_t b) { return (a + (a < 0 ? -b / 2 : b / 2)) / b; }
+
+/* The integer a b, its fraction cut off, for a real and an integer b > 0; saturated. */
 int32_t mh_real_times(mh_real a, int32_t b);
 
 /* The integer nearest to a. */

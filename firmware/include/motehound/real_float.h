@@ -10,6 +10,7 @@
 typedef float mh_real;
 
 #define MH_REAL(constant) (constant)
+#define MH_REAL_UPTO(constant) (constant)
 #define MH_REAL_MIN 1.2e-38f /* positive numbers below are not normal: they lose digits, or are 0 */
 #define MH_REAL_MAX 3.4e38f  /* what is larger is not finite */
 
@@ -21,6 +22,7 @@ typedef mh_real mh_wide;
 static inline mh_wide mh_wide_mul(mh_real a, mh_real b) { return a * b; }
 static inline mh_real mh_wide_div(mh_wide a, mh_real b) { return a / b; }
 static inline mh_real mh_wide_sqrt(mh_wide a) { return sqrtf(a); }
+static inline mh_real mh_wide_ratio(mh_wide a, mh_wide b) { return a / b; }
 static inline mh_real mh_wide_to_real(mh_wide a) { return a; }
 
 static inline mh_real mh_abs(mh_real a) { return fabsf(a); }
@@ -36,7 +38,10 @@ static inline bool mh_finite(mh_real a) { return mh_abs(a) <= MH_REAL_MAX; }
 static inline mh_real mh_real_from_int(int32_t a) { return (mh_real)a; }
 #define mh_real_from_ratio(a, b) ((mh_real)(int32_t)(a) * (1.0f / (mh_real)(b)))
 
-/* The integer a b, its fraction cut off, for a constant b > 0; |a b| below 2e9. */
+/* a / b for a real and a constant integer b > 0 (one multiplication). */
+#define mh_real_over(a, b) ((a) * (1.0f / (mh_real)(b)))
+
+/* The integer a b, its fraction cut off, for a real and an integer b > 0; |a b| below 2e9. */
 #define mh_real_times(a, b) ((int32_t)((a) * (mh_real)(b)))
 
 /* The integer nearest to a; |a| below 2e9. */

@@ -34,6 +34,22 @@ mh_real mh_wide_div(mh_wide a, mh_real b)
     return negative ? -saturated : saturated;
 }
 
+/* Both are shortened until the divisor has 31 bits; a dividend that then has no room for the fraction is too large anyway. */
+mh_real mh_wide_ratio(mh_wide a, mh_wide b)
+{
+    const bool negative = (a < 0) != (b < 0);
+    uint64_t over = a < 0 ? 0 - (uint64_t)a : (uint64_t)a, under = b < 0 ? 0 - (uint64_t)b : (uint64_t)b;
+    for (; under >> 31 != 0; under >>= 1) {
+        over >>= 1;
+    }
+    if (under == 0 || over >> 47 != 0) {
+        return negative ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
+    }
+    const uint64_t quotient = ((over << MH_REAL_BITS) + under / 2) / under;
+    const mh_real saturated = quotient > MH_REAL_MAX ? MH_REAL_INFINITE : (mh_real)quotient;
+    return negative ? -saturated : saturated;
+}
+
 mh_real mh_sqrt(mh_real a) { return mh_wide_sqrt((mh_wide)a * MH_REAL_ONE); }
 
 mh_real mh_wide_sqrt(mh_wide a)

@@ -1,11 +1,9 @@
 #include "motehound/followed.h"
 
-static bool is_finite(struct mh_vec2 v) { return mh_finite(v.x) && mh_finite(v.y); }
-
 enum mh_status mh_followed_report(struct mh_followed *followed, mh_tick time, struct mh_vec2 position,
                                   struct mh_vec2 velocity)
 {
-    if (!is_finite(position) || !is_finite(velocity)) {
+    if (!mh_vec2_finite(position) || !mh_vec2_finite(velocity)) {
         return MH_ERR_NOT_FINITE;
     }
     if (followed->known && mh_tick_before(time, followed->time)) {
@@ -24,9 +22,8 @@ enum mh_status mh_followed_predict(const struct mh_followed *followed, mh_tick t
         return MH_NONE;
     }
     const mh_real seconds = mh_seconds_between(followed->time, time);
-    const struct mh_vec2 there = {followed->position.x + followed->velocity.x * seconds,
-                                  followed->position.y + followed->velocity.y * seconds};
-    if (!is_finite(there)) {
+    const struct mh_vec2 there = mh_vec2_along(followed->position, seconds, followed->velocity);
+    if (!mh_vec2_finite(there)) {
         return MH_ERR_NOT_FINITE;
     }
     *position = there;
@@ -39,6 +36,5 @@ bool mh_followed_differs(const struct mh_followed *followed, mh_tick time, struc
     if (mh_followed_predict(followed, time, &expected) != MH_OK) {
         return true;
     }
-    const mh_real square = mh_squared(position.x - expected.x) + mh_squared(position.y - expected.y);
-    return !(square <= mh_squared(tolerance_m));
+    return !(mh_vec2_square(mh_vec2_between(expected, position)) <= mh_wide_mul(tolerance_m, tolerance_m));
 }

@@ -106,8 +106,14 @@ bool mh_cluster_outranks(const struct mh_cluster_of *a, const struct mh_cluster_
 struct mh_place mh_cluster_expected(const struct mh_cluster_of *of, mh_tick time)
 {
     const struct mh_place from = {of->x_mm, of->y_mm, 0};
+#if MH_REAL_FIXED /* a thousandth of a second more or less is as much as 16 fractional bits tell of the scale below */
+    const mh_real seconds = mh_seconds_between(of->time, time);
+    const struct mh_vec2 moved = {mh_mul(mh_real_from_ratio(of->vx_mmps, 1000), seconds),
+                                  mh_mul(mh_real_from_ratio(of->vy_mmps, 1000), seconds)};
+#else
     const mh_real scale = mh_seconds_between(of->time, time) * 1e-3f;
     const struct mh_vec2 moved = {(mh_real)of->vx_mmps * scale, (mh_real)of->vy_mmps * scale};
+#endif
     return mh_place_from_offset(&from, moved);
 }
 

@@ -17,7 +17,8 @@ static bool rule_wants_joins(enum mh_election rule) { return rule == MH_ELECTION
 
 static int32_t mm_per_s(mh_real mps)
 {
-    return (int32_t)mh_clamp(mps * 1000.0f, -(mh_real)MH_COORDINATE_MAX_MM, (mh_real)MH_COORDINATE_MAX_MM);
+    const mh_real most = MH_REAL_UPTO(1e6f);
+    return mh_real_times(mh_clamp(mps, -most, most), 1000);
 }
 
 /* ---- who may take the track ---- */
@@ -104,7 +105,7 @@ static bool concerns(const struct mh_cluster_node *c, const struct mh_cluster_of
 {
     const struct mh_place mine = mh_cluster_expected(&c->of, other->time), theirs = {other->x_mm, other->y_mm, 0};
     return other->track == c->of.track ||
-           mh_place_within(&mine, &theirs, (uint32_t)(c->config->election.sensing_range_m * 1000.0f));
+           mh_place_within(&mine, &theirs, (uint32_t)mh_real_times(c->config->election.sensing_range_m, 1000));
 }
 
 bool mh_cluster_contest(struct mh_cluster_node *c, const struct mh_cluster_of *other)
@@ -135,7 +136,7 @@ static bool few_are_asked(const struct mh_cluster_node *c)
     uint8_t covering = 0;
     for (uint8_t i = 0; i < c->cluster.count; i++) {
         covering = (uint8_t)(covering + mh_place_within(&c->cluster.members[i].place, &expected,
-                                                        (uint32_t)(election->sensing_range_m * 1000.0f)));
+                                                        (uint32_t)mh_real_times(election->sensing_range_m, 1000)));
     }
     const uint8_t answers = covering < c->last_answers ? covering : c->last_answers;
     return election->rule == MH_ELECTION_SACX && 2 * answers < 3 * election->least_answers;
@@ -176,7 +177,7 @@ void mh_cluster_ask(struct mh_cluster_node *c)
 static bool somebody_is_missing(const struct mh_cluster_node *c)
 {
     const struct mh_place expected = {c->of.x_mm, c->of.y_mm, 0};
-    const uint32_t surely_mm = (uint32_t)(c->config->election.sensing_range_m * 800.0f);
+    const uint32_t surely_mm = (uint32_t)mh_real_times(c->config->election.sensing_range_m, 800);
     for (uint8_t i = 0; i < c->cluster.count && i < MH_FORM_MEMBERS; i++) {
         if ((c->heard >> i & 1u) == 0 && mh_place_within(&c->cluster.members[i].place, &expected, surely_mm)) {
             return true;

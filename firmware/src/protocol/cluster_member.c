@@ -214,11 +214,12 @@ void mh_cluster_answer_sent(struct mh_cluster_node *c, enum mh_sent outcome)
 static mh_tick alert_time(const struct mh_cluster_node *c, mh_q20 range)
 {
     const mh_real reach =
-        mh_clamp(mh_q20_to_real(range) / c->config->election.sensing_range_m, 0, 1.0f) * ALERT_WINDOWS;
-    const uint8_t windows = reach < ALERT_WINDOWS ? (uint8_t)reach : ALERT_WINDOWS - 1;
+        mh_clamp(mh_div(mh_q20_to_real(range), c->config->election.sensing_range_m), 0, MH_REAL(1.0f)) * ALERT_WINDOWS;
+    const uint8_t windows =
+        reach < mh_real_from_int(ALERT_WINDOWS) ? (uint8_t)mh_real_times(reach, 1) : ALERT_WINDOWS - 1;
     const mh_tick half = c->config->wake_length / 2;
     return mh_rendezvous_after(&c->rendezvous, c->time, windows) +
-           (mh_tick)((reach - (mh_real)windows) * (mh_real)half);
+           (mh_tick)mh_real_times(reach - mh_real_from_int(windows), (int32_t)half);
 }
 
 /* The target was found by a node that nobody has asked. It counts as a generation behind the cluster that it has heard of until it has formed its
@@ -241,7 +242,8 @@ static void found(struct mh_cluster_node *c, const struct mh_measurement *measur
 static bool is_near(const struct mh_cluster_node *c, const struct mh_measurement *measurement)
 {
     const struct mh_election_config *election = &c->config->election;
-    return mh_q20_to_real(measurement->value) + election->sensing_range_m <= 0.9f * election->radio_range_m;
+    return mh_q20_to_real(measurement->value) + election->sensing_range_m <=
+           mh_mul(MH_REAL(0.9f), election->radio_range_m);
 }
 
 /* Who measures the target from far may only be too far from its head: he waits and sees whether others find it. */

@@ -18,7 +18,8 @@ void mh_cluster_hear_position(struct mh_cluster_node *c, const mh_position_t *po
         return;
     }
     const struct mh_vec2 here = {0, 0};
-    const struct mh_vec2 velocity = {(mh_real)position->vx_mmps * 1e-3f, (mh_real)position->vy_mmps * 1e-3f};
+    const struct mh_vec2 velocity = {mh_real_from_ratio(position->vx_mmps, 1000),
+                                     mh_real_from_ratio(position->vy_mmps, 1000)};
     if (mh_followed_report(&c->followed, time, here, velocity) == MH_OK) {
         const struct mh_place origin = {position->x_mm, position->y_mm, 0};
         c->followed_origin = origin;

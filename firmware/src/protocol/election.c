@@ -8,8 +8,8 @@ void mh_election_config_default(struct mh_election_config *config, enum mh_elect
         .members = members < MH_CLUSTER_MAX ? members : MH_CLUSTER_MAX,
         .horizon = 4,
         .least_answers = 4,
-        .sensing_range_m = 50.0f,
-        .radio_range_m = 100.0f,
+        .sensing_range_m = MH_REAL(50.0f),
+        .radio_range_m = MH_REAL(100.0f),
         .interval = 2 * MH_TICKS_PER_S,
     };
     *config = nominal;
@@ -20,8 +20,9 @@ enum mh_status mh_election_check(const struct mh_election_config *config)
     const bool sound = (unsigned)config->rule < MH_ELECTIONS && config->members >= 1 &&
                        config->members <= MH_CLUSTER_MAX && config->horizon >= 1 &&
                        config->horizon <= MH_ELECTION_HORIZON_MAX && config->least_answers <= MH_CLUSTER_MAX + 1 &&
-                       mh_within(config->sensing_range_m, 0.1f, 1e4f) && mh_within(config->radio_range_m, 0.1f, 1e5f) &&
-                       config->interval >= 1 && config->interval <= 3600000u;
+                       mh_within(config->sensing_range_m, MH_REAL(0.1f), MH_REAL(1e4f)) &&
+                       mh_within(config->radio_range_m, MH_REAL(0.1f), MH_REAL_UPTO(1e5f)) && config->interval >= 1 &&
+                       config->interval <= 3600000u;
     return sound ? MH_OK : MH_ERR_ARGUMENT;
 }
 
@@ -30,7 +31,7 @@ static bool takes_all_that_detect(enum mh_election rule)
     return rule == MH_ELECTION_SCM || rule == MH_ELECTION_SCM_NEAR || rule == MH_ELECTION_SCM_SET;
 }
 
-static uint32_t millimetres(mh_real m) { return (uint32_t)(m * 1000.0f); }
+static uint32_t millimetres(mh_real m) { return (uint32_t)mh_real_times(m, 1000); }
 
 const struct mh_member *mh_cluster_find(const struct mh_cluster *cluster, mh_node_id id)
 {
@@ -69,7 +70,7 @@ struct way {
     struct mh_place origin;
     struct mh_vec2 position, start, step; /* step: of one interval from `start` */
     mh_real step_length;
-    mh_real sensing_squared;
+    mh_real sensing;
     uint32_t sensing_mm, radio_mm;
     uint8_t horizon;
 };
@@ -77,7 +78,7 @@ struct way {
 static enum mh_status make_way(struct way *way, const struct mh_election_config *config,
                                const struct mh_estimate *estimate)
 {
-    const mh_real interval_s = (mh_real)config->interval * (1.0f / (mh_real)MH_TICKS_PER_S);
+    const mh_real interval_s = mh_real_from_ratio((int32_t)config->interval, (int32_t)MH_TICKS_PER_S);
     way->origin = estimate->origin;
     way->position = estimate->position;
     if (config->rule == MH_ELECTION_SACX) {
@@ -87,23 +88,22 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
         way->start = estimate->stored;
         way->step = estimate->stored_velocity;
     }
-    way->step.x *= interval_s;
-    way->step.y *= interval_s;
-    way->step_length = mh_sqrt(mh_squared(way->step.x) + mh_squared(way->step.y));
-    way->sensing_squared = mh_squared(config->sensing_range_m);
+    way->step.x = mh_mul(way->step.x, interval_s);
+    way->step.y = mh_mul(way->step.y, interval_s);
+    way->step_length = mh_vec2_length(way->step);
+    way->sensing = config->sensing_range_m;
     way->sensing_mm = millimetres(config->sensing_range_m);
     way->radio_mm = millimetres(config->radio_range_m);
-    if (!mh_finite(way->position.x) || !mh_finite(way->position.y) || !mh_finite(way->start.x) ||
-        !mh_finite(way->start.y) || !mh_finite(way->step_length)) {
+    if (!mh_vec2_finite(way->position) || !mh_vec2_finite(way->start) || !mh_finite(way->step_length)) {
         return MH_ERR_NOT_FINITE;
     }
     way->horizon = config->horizon;
     if (config->rule == MH_ELECTION_SACX) {
-        const mh_real diameter = 2.0f * config->sensing_range_m;
-        const bool fast = way->step_length * MH_ELECTION_HORIZON_MAX > diameter;
-        const mh_real crossing = fast ? diameter / way->step_length : (mh_real)MH_ELECTION_HORIZON_MAX;
-        const uint8_t whole = (uint8_t)crossing;
-        const uint8_t instants = (uint8_t)(whole + ((mh_real)whole < crossing ? 1 : 0));
+        const mh_real diameter = 2 * config->sensing_range_m, most = mh_real_from_int(MH_ELECTION_HORIZON_MAX);
+        const bool fast = mh_wide_mul(way->step_length, most) > mh_wide_mul(diameter, MH_REAL(1.0f));
+        const mh_real crossing = fast ? mh_div(diameter, way->step_length) : most;
+        const uint8_t whole = (uint8_t)mh_real_times(crossing, 1);
+        const uint8_t instants = (uint8_t)(whole + (mh_real_from_int(whole) < crossing ? 1 : 0));
         way->horizon = instants < 2 ? 2 : instants;
     }
     return MH_OK;
@@ -112,22 +112,18 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
 /* `place`, as a vector from where the target is expected after `intervals`. */
 static struct mh_vec2 from_prediction(const struct way *way, mh_real intervals, const struct mh_place *place)
 {
-    struct mh_vec2 v = mh_place_relative(place, &way->origin);
-    v.x -= way->start.x + intervals * way->step.x;
-    v.y -= way->start.y + intervals * way->step.y;
-    return v;
+    return mh_vec2_between(mh_vec2_along(way->start, intervals, way->step), mh_place_relative(place, &way->origin));
 }
-
-static mh_real square_of(struct mh_vec2 v) { return mh_squared(v.x) + mh_squared(v.y); }
 
 static bool covers(const struct way *way, mh_real intervals, const struct mh_place *place)
 {
-    return square_of(from_prediction(way, intervals, place)) <= way->sensing_squared;
+    return mh_vec2_square(from_prediction(way, intervals, place)) <= mh_wide_mul(way->sensing, way->sensing);
 }
 
 /* How good a node is: more merit, then less distance, then the lower identifier. */
 struct rank {
-    mh_real merit, distance;
+    mh_real merit;
+    mh_wide distance; /* squared */
     mh_node_id id;
 };
 
@@ -145,12 +141,13 @@ static bool better(const struct rank *a, const struct rank *b)
 /* How far the target goes inside the node's disc from P_1 on. */
 static mh_real way_inside(const struct way *way, const struct mh_place *place)
 {
-    const struct mh_vec2 d = from_prediction(way, 1.0f, place);
+    const struct mh_vec2 d = from_prediction(way, MH_REAL(1.0f), place);
     if (!(way->step_length > 0)) {
-        return mh_sqrt(way->sensing_squared) - mh_sqrt(square_of(d));
+        return mh_add(way->sensing, -mh_vec2_length(d));
     }
-    const mh_real ahead = (d.x * way->step.x + d.y * way->step.y) / way->step_length;
-    return ahead + mh_sqrt(mh_max(mh_squared(ahead) + way->sensing_squared - square_of(d), 0));
+    const mh_real ahead = mh_wide_div(mh_vec2_dot(d, way->step), way->step_length);
+    const mh_wide half_chord = mh_wide_mul(ahead, ahead) + mh_wide_mul(way->sensing, way->sensing) - mh_vec2_square(d);
+    return ahead + mh_wide_sqrt(half_chord > 0 ? half_chord : 0);
 }
 
 /* The candidate as a node of the cluster that the rules sac, sacx and rho form. */
@@ -165,16 +162,17 @@ static struct mh_member rank_ahead(const struct mh_election_config *config, cons
         return member;
     }
     for (uint8_t q = 1; q <= way->horizon; q++) {
-        if (covers(way, (mh_real)q, &candidate->place)) {
+        if (covers(way, mh_real_from_int(q), &candidate->place)) {
             member.first = member.first == 0 ? q : member.first;
             member.last = q;
         }
     }
     /* a straight line cuts a disc in one piece */
     const uint8_t instants = member.last == 0 ? 0 : (uint8_t)(member.last - member.first + 1);
-    const mh_real aim = config->rule == MH_ELECTION_SACX ? 0.5f * (mh_real)(way->horizon + 1) : (mh_real)way->horizon;
-    rank->merit = (mh_real)instants;
-    rank->distance = square_of(from_prediction(way, aim, &candidate->place));
+    const mh_real aim =
+        config->rule == MH_ELECTION_SACX ? mh_real_from_int(way->horizon + 1) / 2 : mh_real_from_int(way->horizon);
+    rank->merit = mh_real_from_int(instants);
+    rank->distance = mh_vec2_square(from_prediction(way, aim, &candidate->place));
     return member;
 }
 
@@ -216,7 +214,7 @@ static void choose_ahead(const struct mh_election_config *config, const struct w
         const struct mh_candidate *candidate = &candidates[i];
         const bool near = config->rule == MH_ELECTION_SACX
                               ? mh_place_within(&candidate->place, &cluster->head.place, way->radio_mm)
-                              : covers(way, 1.0f, &candidate->place);
+                              : covers(way, MH_REAL(1.0f), &candidate->place);
         if (candidate->id == cluster->head.id || !near) {
             continue;
         }
@@ -239,7 +237,7 @@ static void choose_detecting(const struct mh_candidate *candidates, size_t count
     for (size_t i = 0; i < count; i++) {
         if (candidates[i].detects && candidates[i].id != cluster->head.id) {
             const struct mh_vec2 d = mh_place_relative(&candidates[i].place, about);
-            const struct rank rank = {0, square_of(d), candidates[i].id};
+            const struct rank rank = {0, mh_vec2_square(d), candidates[i].id};
             const struct mh_member member = {candidates[i].id, candidates[i].place, 0, 0};
             add(&list, &member, &rank);
         }
@@ -253,7 +251,7 @@ static const struct mh_candidate *nearest_detecting(const struct mh_candidate *c
     const struct mh_candidate *nearest = NULL;
     struct rank best = {0, 0, 0};
     for (size_t i = 0; i < count; i++) {
-        const struct rank rank = {0, square_of(mh_place_relative(&candidates[i].place, about)), candidates[i].id};
+        const struct rank rank = {0, mh_vec2_square(mh_place_relative(&candidates[i].place, about)), candidates[i].id};
         if (candidates[i].detects && (nearest == NULL || better(&rank, &best))) {
             nearest = &candidates[i];
             best = rank;
@@ -318,17 +316,17 @@ static bool due_ahead(const struct mh_election_config *config, const struct way 
     size_t answers = 0, replacements = 0;
     for (size_t i = 0; i < count; i++) {
         answers += candidates[i].detects;
-        replacements += covers(way, 1.0f, &candidates[i].place);
+        replacements += covers(way, MH_REAL(1.0f), &candidates[i].place);
     }
     if (replacements == 0) {
         return false;
     }
-    if (!covers(way, 1.0f, &cluster->head.place)) {
+    if (!covers(way, MH_REAL(1.0f), &cluster->head.place)) {
         return true;
     }
     size_t covering = 1;
     for (uint8_t i = 0; i < cluster->count; i++) {
-        covering += covers(way, 1.0f, &cluster->members[i].place);
+        covering += covers(way, MH_REAL(1.0f), &cluster->members[i].place);
     }
     const size_t effective = answers < covering ? answers : covering;
     return effective < config->least_answers && replacements > effective;
@@ -340,10 +338,12 @@ static uint8_t suits(const struct way *way, const struct mh_candidate *candidate
     if (!mh_place_within(&candidate->place, head, way->sensing_mm)) {
         return 0;
     }
-    const struct mh_vec2 d = from_prediction(way, 0.0f, &candidate->place);
-    const mh_real ahead = d.x * way->step.x + d.y * way->step.y;
-    const bool in_sector = !(way->step_length > 0) || (ahead >= 0 && 2.0f * mh_squared(ahead / way->step_length) >=
-                                                                         square_of(d)); /* cos2 of 45 degrees is 1/2 */
+    const struct mh_vec2 d = from_prediction(way, 0, &candidate->place);
+    const mh_wide ahead = mh_vec2_dot(d, way->step);
+    const mh_real along = way->step_length > 0 ? mh_wide_div(ahead, way->step_length) : 0;
+    const bool in_sector =
+        !(way->step_length > 0) ||
+        (ahead >= 0 && 2 * mh_wide_mul(along, along) >= mh_vec2_square(d)); /* cos2 of 45 degrees is 1/2 */
     return in_sector ? 2 : 1;
 }
 
@@ -358,7 +358,7 @@ static enum mh_status elect_ahead(const struct mh_election_config *config, const
     uint8_t best_suits = 0;
     bool found = false;
     for (size_t i = 0; i < count; i++) {
-        if (!covers(way, 1.0f, &candidates[i].place)) {
+        if (!covers(way, MH_REAL(1.0f), &candidates[i].place)) {
             continue;
         }
         struct rank rank;

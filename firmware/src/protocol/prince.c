@@ -192,7 +192,7 @@ void mh_prince_sample(struct mh_prince *p, struct mh_prince_row *row, uint8_t wa
 
 static bool is_entered(const struct mh_prince *p, const struct mh_prince_entry *entry)
 {
-    const uint32_t range_mm = (uint32_t)(p->config->radio_range_m * 1000.0f);
+    const uint32_t range_mm = (uint32_t)mh_real_times(p->config->radio_range_m, 1000);
     return mh_place_within(&p->node->place, &entry->place, range_mm);
 }
 
@@ -349,7 +349,7 @@ static void say_hello(struct mh_prince *p)
 void mh_prince_config_default(struct mh_prince_config *config, enum mh_prince_election election, bool guarded,
                               mh_real sensing_range_m, mh_real radio_range_m)
 {
-    const mh_real margin_m = 0.2f * sensing_range_m;
+    const mh_real margin_m = mh_mul(MH_REAL(0.2f), sensing_range_m);
     const struct mh_prince_config nominal = {
         .election = election,
         .guards = guarded ? MH_PRINCE_ALL : MH_PRINCE_EXCEPTION,
@@ -358,9 +358,9 @@ void mh_prince_config_default(struct mh_prince_config *config, enum mh_prince_el
         .radio_range_m = radio_range_m,
         .margin_m = margin_m,
         .outer_m = guarded ? 2 * sensing_range_m : sensing_range_m + margin_m,
-        .exception = guarded ? mh_squared(sensing_range_m / (sensing_range_m - margin_m)) : 1,
+        .exception = guarded ? mh_squared(mh_div(sensing_range_m, sensing_range_m - margin_m)) : MH_REAL(1.0f),
         .loudness_m2 = mh_squared(sensing_range_m),
-        .step_m = 1.5f * sensing_range_m,
+        .step_m = mh_mul(MH_REAL(1.5f), sensing_range_m),
         .tick = 250,
         .window = 300,
         .contest = 350,
@@ -369,20 +369,19 @@ void mh_prince_config_default(struct mh_prince_config *config, enum mh_prince_el
     *config = nominal;
 }
 
-static bool within(mh_real value, mh_real least, mh_real most) { return value >= least && value <= most; }
-
 static bool sound(const struct mh_prince_config *config)
 {
     const struct mh_prince_port *port = config->port;
+    const mh_real one = MH_REAL(1.0f);
     bool sound =
         port && port->localise && port->expect && port->join && port->part && config->election <= MH_PRINCE_TIMESTAMP &&
         config->guards <= MH_PRINCE_ALL && config->replies >= 2 && config->replies <= 100 &&
-        within(config->sensing_range_m, 1, 1000) && config->radio_range_m > config->sensing_range_m &&
-        config->radio_range_m <= 10000 && within(config->margin_m, 0, config->sensing_range_m) &&
-        within(config->outer_m, config->sensing_range_m, 10 * config->sensing_range_m) &&
-        within(config->exception, 1, 100) && within(config->loudness_m2, 1, 1e8f) && within(config->step_m, 1, 10000) &&
-        config->tick >= 20 && config->tick <= 60000u && config->window >= 20 && config->window <= 10000 &&
-        config->contest >= 1 && config->contest <= 10000 &&
+        mh_within(config->sensing_range_m, one, MH_REAL(1000.0f)) && config->radio_range_m > config->sensing_range_m &&
+        config->radio_range_m <= MH_REAL(10000.0f) && mh_within(config->margin_m, 0, config->sensing_range_m) &&
+        mh_within(config->outer_m, config->sensing_range_m, 10 * config->sensing_range_m) &&
+        mh_within(config->exception, one, MH_REAL(100.0f)) && mh_within(config->loudness_m2, one, MH_REAL_UPTO(1e8f)) &&
+        mh_within(config->step_m, one, MH_REAL(10000.0f)) && config->tick >= 20 && config->tick <= 60000u &&
+        config->window >= 20 && config->window <= 10000 && config->contest >= 1 && config->contest <= 10000 &&
         (config->watch_period == 0 || config->watch_period >= config->tick) && config->watch_period <= 3600000u &&
         config->wake_period <= 900000u &&
         (config->wake_period == 0 || (config->wake_length >= 4 && config->wake_length < config->wake_period)) &&

@@ -4,7 +4,7 @@
 
 #define PART_STAYS 10000u /* ticks that a part is taken to stay near, until it is known */
 
-#define SAME_M 25.0f /* a target found first so near to where another is known to be is that */
+#define SAME_M MH_REAL(25.0f) /* a target found first so near to where another is known to be is that */
 
 static void say_merge(struct mh_prince *p, const struct mh_prince_row *row, uint32_t other, bool answers)
 {
@@ -28,7 +28,7 @@ bool mh_prince_claims(struct mh_prince *p, const mh_awake_t *awake)
         }
         const struct mh_vec2 off = mh_prince_expected(p, row, &found);
         const mh_real reach_m = mh_prince_speed(row) > 0 ? SAME_M : mh_prince_drift(p, row);
-        if (mh_squared(off.x) + mh_squared(off.y) <= mh_squared(reach_m)) {
+        if (mh_vec2_square(off) <= mh_wide_mul(reach_m, reach_m)) {
             known = true;
             if (row->state == MH_PRINCE_HEAD) {
                 say_merge(p, row, (uint32_t)awake->target, true);

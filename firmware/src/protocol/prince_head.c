@@ -6,17 +6,23 @@
 #define FAILED_WATCH 10000 /* ticks for which a fail_t makes competitors */
 #define HANDED_WATCH 3000  /* ticks for which an old head watches on */
 #define UNKNOWN_ARMS 3000  /* ticks after which competitors may contend where it is not known how the target moves */
-#define PRINCE_LEAD 0.8f   /* s, in which a prince learns that it is prince */
-#define DOG_WAIT 2500      /* ticks after the prince was due */
-#define DOG_HASTE 1.2f     /* times the largest of the last speeds is what the target may do */
-#define DOG_SPEED_MPS 6.0f /* ... at least */
-#define DOG_LATEST 25.0f   /* s after the fix: later nobody would believe it (mh_prince_is_fresh) */
-#define UNGUARDED 15000    /* ticks for which a head without watchdog waits after the prince was due */
-#define KEPT 20000         /* ticks for which a row is kept after that */
-#define SLOWEST_MPS 1.0f   /* a velocity below is none */
-#define SPEED_STEPS 4.0f   /* that a speed is told in, a m/s */
+#define PRINCE_LEAD MH_REAL(0.8f)   /* s, in which a prince learns that it is prince */
+#define DOG_WAIT 2500               /* ticks after the prince was due */
+#define DOG_HASTE MH_REAL(1.2f)     /* times the largest of the last speeds is what the target may do */
+#define DOG_SPEED_MPS MH_REAL(6.0f) /* ... at least */
+#define DOG_LATEST MH_REAL(25.0f)   /* s after the fix: later nobody would believe it (mh_prince_is_fresh) */
+#define UNGUARDED 15000             /* ticks for which a head without watchdog waits after the prince was due */
+#define KEPT 20000                  /* ticks for which a row is kept after that */
+#define SLOWEST_MPS MH_REAL(1.0f)   /* a velocity below is none */
+#define SPEED_STEPS 4               /* that a speed is told in, a m/s */
 
-static int16_t to_i16(mh_real value) { return (int16_t)mh_clamp(value, INT16_MIN + 1.0f, INT16_MAX - 1.0f); }
+/* `value` in `steps` a unit, saturated. */
+static int16_t to_i16(mh_real value, int16_t steps)
+{
+    const mh_real most = MH_REAL_UPTO(1e6f);
+    const int32_t number = mh_real_times(mh_clamp(value, -most, most), steps);
+    return (int16_t)(number > INT16_MAX - 1 ? INT16_MAX - 1 : number < INT16_MIN + 1 ? INT16_MIN + 1 : number);
+}
 
 static struct mh_place fix_of(const struct mh_prince_row *row)
 {
@@ -37,7 +43,7 @@ static void say_in_window(struct mh_prince *p, struct mh_prince_row *row, enum m
 /* From the fix to `time`, in 10 ms. */
 static int16_t since_fix_cs(const struct mh_prince_row *row, mh_tick time)
 {
-    return to_i16(mh_max(mh_seconds_between(row->found, time), 0) * 100.0f);
+    return to_i16(mh_max(mh_seconds_between(row->found, time), 0), 100);
 }
 
 static void say_awake(struct mh_prince *p, const struct mh_prince_row *row)
@@ -53,8 +59,8 @@ static void say_awake(struct mh_prince *p, const struct mh_prince_row *row)
                                               .y_mm = row->y_mm,
                                               .vx_cmps = row->vx_cmps,
                                               .vy_cmps = row->vy_cmps,
-                                              .head_x_dm = to_i16(head.x * 10.0f),
-                                              .head_y_dm = to_i16(head.y * 10.0f),
+                                              .head_x_dm = to_i16(head.x, 10),
+                                              .head_y_dm = to_i16(head.y, 10),
                                               .prince = (int32_t)row->prince,
                                               .enters_cs = since_fix_cs(row, row->enters),
                                               .arms_cs = since_fix_cs(row, row->arms),
@@ -138,24 +144,25 @@ static void note_speed(struct mh_prince_row *row, const struct mh_place *place, 
     const struct mh_place before = fix_of(row);
     const mh_real seconds = mh_seconds_between(row->found, time);
     if (row->fixed && seconds > 0) {
-        const mh_real speed_mps = (mh_real)mh_place_distance_mm(&before, place) * 1e-3f / seconds;
+        const mh_real speed_mps =
+            mh_div(mh_real_from_ratio((int32_t)mh_place_distance_mm(&before, place), 1000), seconds);
         memmove(row->speeds + 1, row->speeds, sizeof row->speeds - 1);
-        row->speeds[0] = (uint8_t)mh_min(speed_mps * SPEED_STEPS, 255);
+        row->speeds[0] = (uint8_t)mh_real_times(mh_min(speed_mps, MH_REAL(255.0f / SPEED_STEPS)), SPEED_STEPS);
     }
 }
 
 static void take_fix(struct mh_prince_row *row, const struct mh_estimate *estimate)
 {
     const struct mh_place place = mh_place_from_offset(&estimate->origin, estimate->position);
-    const bool moves = mh_sqrt(mh_squared(estimate->velocity.x) + mh_squared(estimate->velocity.y)) >= SLOWEST_MPS;
+    const bool moves = mh_vec2_length(estimate->velocity) >= SLOWEST_MPS;
     note_speed(row, &place, row->asked);
     row->fixed = true;
     row->found = row->asked;
     row->x_mm = place.x_mm;
     row->y_mm = place.y_mm;
-    row->vx_cmps = moves ? to_i16(estimate->velocity.x * 100.0f) : 0;
-    row->vy_cmps = moves ? to_i16(estimate->velocity.y * 100.0f) : 0;
-    row->extent_cm = (uint16_t)to_i16(mh_max(estimate->extent, 0) * 100.0f);
+    row->vx_cmps = moves ? to_i16(estimate->velocity.x, 100) : 0;
+    row->vy_cmps = moves ? to_i16(estimate->velocity.y, 100) : 0;
+    row->extent_cm = (uint16_t)to_i16(mh_max(estimate->extent, 0), 100);
     row->members = estimate->members > 1 && estimate->members <= MH_GROUP_MAX ? estimate->members : 1;
 }
 
@@ -166,18 +173,19 @@ static void name_prince(struct mh_prince *p, struct mh_prince_row *row)
     const mh_real speed_mps = mh_prince_speed(row);
     row->prince = MH_BROADCAST;
     row->enters = p->time;
-    row->arms = speed_mps == 0                        ? p->time + UNKNOWN_ARMS
-                : config->election == MH_PRINCE_NAMED ? p->time
-                                                      : row->found + (mh_tick)(config->step_m / speed_mps * 1000.0f);
+    row->arms = speed_mps == 0 ? p->time + UNKNOWN_ARMS
+                : config->election == MH_PRINCE_NAMED
+                    ? p->time
+                    : row->found + (mh_tick)mh_real_times(mh_div(config->step_m, speed_mps), 1000);
     if (speed_mps == 0 || config->election != MH_PRINCE_NAMED) {
         return;
     }
     const struct mh_strips strips =
-        mh_strips(config->sensing_range_m, config->margin_m, config->outer_m, (mh_real)row->extent_cm * 0.01f);
+        mh_strips(config->sensing_range_m, config->margin_m, config->outer_m, mh_real_from_ratio(row->extent_cm, 100));
     const struct mh_prince_rule rule = {config->step_m, PRINCE_LEAD, config->farthest};
     const struct mh_place fix = fix_of(row);
     const struct mh_course course = {.head = mh_place_relative(&p->node->place, &fix),
-                                     .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
+                                     .velocity = mh_prince_velocity(row)};
     struct mh_prince_choice best = {.found = false};
     for (uint8_t i = 0; i < p->neighbours.count; i++) {
         const struct mh_neighbour *neighbour = &p->neighbours.list[i];
@@ -187,7 +195,7 @@ static void name_prince(struct mh_prince *p, struct mh_prince_row *row)
     }
     if (best.found) {
         row->prince = best.id;
-        row->enters = row->found + (mh_tick)(best.entry_s * 1000.0f);
+        row->enters = row->found + (mh_tick)mh_real_times(best.entry_s, 1000);
     }
 }
 
@@ -196,11 +204,11 @@ static void set_dog(struct mh_prince *p, struct mh_prince_row *row)
     const struct mh_prince_config *config = p->config;
     mh_real largest = 0;
     for (size_t i = 0; i < sizeof row->speeds; i++) {
-        largest = mh_max(largest, (mh_real)row->speeds[i] / SPEED_STEPS);
+        largest = mh_max(largest, mh_real_from_ratio(row->speeds[i], SPEED_STEPS));
     }
     const mh_real away_s =
-        (config->radio_range_m - config->sensing_range_m) / mh_max(DOG_HASTE * largest, DOG_SPEED_MPS);
-    mh_tick due = row->found + (mh_tick)(mh_min(away_s, DOG_LATEST) * 1000.0f);
+        mh_div(config->radio_range_m - config->sensing_range_m, mh_max(mh_mul(DOG_HASTE, largest), DOG_SPEED_MPS));
+    mh_tick due = row->found + (mh_tick)mh_real_times(mh_min(away_s, DOG_LATEST), 1000);
     if (row->prince != MH_BROADCAST && mh_tick_before(row->enters + DOG_WAIT, due)) {
         due = row->enters + DOG_WAIT;
     }
@@ -332,7 +340,7 @@ void mh_prince_hear_awake(struct mh_prince *p, const mh_awake_t *awake)
         return;
     }
     take_awake(row, awake);
-    const struct mh_vec2 head = {(mh_real)awake->head_x_dm * 0.1f, (mh_real)awake->head_y_dm * 0.1f};
+    const struct mh_vec2 head = {mh_real_from_ratio(awake->head_x_dm, 10), mh_real_from_ratio(awake->head_y_dm, 10)};
     mh_prince_classify(p, row, head, row->found + 10u * (mh_tick)awake->arms_cs);
 }
 

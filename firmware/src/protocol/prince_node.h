@@ -9,7 +9,8 @@
 #define MH_PRINCE_ANSWERS 2 /* that a fix takes at least, beside the locator's own energy */
 
 #define MH_PRINCE_SHARE                                                                                                \
-    0.25f /* of a target in what a node hears, by where all are expected: with less it is another that is heard */
+    MH_REAL(                                                                                                           \
+        0.25f) /* of a target in what a node hears, by where all are expected: with less it is another that is heard */
 
 /* ---- prince.c ---- */
 
@@ -57,6 +58,13 @@ uint8_t mh_prince_number(const struct mh_prince *p, const struct mh_prince_row *
 void mh_prince_sample(struct mh_prince *p, struct mh_prince_row *row, uint8_t wants);
 
 /* ---- prince_watch.c ---- */
+
+/* How the target moves, m/s. */
+static inline struct mh_vec2 mh_prince_velocity(const struct mh_prince_row *row)
+{
+    const struct mh_vec2 velocity = {mh_real_from_ratio(row->vx_cmps, 100), mh_real_from_ratio(row->vy_cmps, 100)};
+    return velocity;
+}
 
 /* How fast the target goes, m/s; 0: unknown. */
 mh_real mh_prince_speed(const struct mh_prince_row *row);

@@ -9,9 +9,10 @@
 #define PASSING 2000     /* ticks for which a target that was only heard of is remembered */
 #define RANKS 8          /* of a window: between answers of nodes by rank */
 #define SLOTS_SHARE                                                                                                    \
-    0.85f /* of a window, over which answers spread by energy: evenly, since the square of the distance is 1 / energy */
-#define SLOT_SPREAD 8     /* ticks by which those of equal energy differ */
-#define LEAST_ENERGY 0.6f /* of a target in an answer: less tells nothing of it */
+    MH_REAL(                                                                                                           \
+        0.85f) /* of a window, over which answers spread by energy: evenly, since the square of the distance is 1 / energy */
+#define SLOT_SPREAD 8              /* ticks by which those of equal energy differ */
+#define LEAST_ENERGY MH_REAL(0.6f) /* of a target in an answer: less tells nothing of it */
 
 /* ---- answers ---- */
 
@@ -311,13 +312,13 @@ void mh_prince_hear_locate(struct mh_prince *p, const mh_locate_t *locate)
 static uint8_t rank(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     const struct mh_vec2 here = mh_prince_expected(p, row, &p->node->place);
-    const mh_real own = mh_squared(here.x) + mh_squared(here.y);
+    const mh_wide own = mh_vec2_square(here);
     uint8_t nearer = 0;
     for (uint8_t i = 0; i < p->neighbours.count; i++) {
         const struct mh_neighbour *neighbour = &p->neighbours.list[i];
         const struct mh_place place = {neighbour->x_mm, neighbour->y_mm, 0};
         const struct mh_vec2 there = mh_prince_expected(p, row, &place);
-        const mh_real square = mh_squared(there.x) + mh_squared(there.y);
+        const mh_wide square = mh_vec2_square(there);
         nearer = (uint8_t)(nearer + (neighbour->id != row->asker &&
                                      (square < own || (square == own && neighbour->id < p->node->id))));
     }
@@ -336,15 +337,18 @@ static mh_tick reply_wait(struct mh_prince *p, const struct mh_prince_row *row, 
             return window / RANKS * slot;
         }
     }
-    return (mh_tick)(SLOTS_SHARE * (mh_real)window / mh_max(energy, 1)) + mh_prince_wait(p, SLOT_SPREAD);
+    return (mh_tick)mh_real_times(
+               mh_div(mh_mul(SLOTS_SHARE, mh_real_from_int((int32_t)window)), mh_max(energy, MH_REAL(1.0f))), 1) +
+           mh_prince_wait(p, SLOT_SPREAD);
 }
 
 void mh_prince_prepare_reply(struct mh_prince *p, struct mh_prince_row *row)
 {
     mh_real share;
     const mh_real energy = mh_prince_energy(p, row, &share, NULL);
-    const bool heard = row->fixed ? mh_q20_to_real(p->value) >= 1 && energy >= LEAST_ENERGY && share >= MH_PRINCE_SHARE
-                                  : mh_prince_hears(p, row);
+    const bool heard =
+        row->fixed ? mh_q20_to_real(p->value) >= MH_REAL(1.0f) && energy >= LEAST_ENERGY && share >= MH_PRINCE_SHARE
+                   : mh_prince_hears(p, row);
     if (!heard || row->state == MH_PRINCE_LOCATE) {
         return;
     }
@@ -365,7 +369,7 @@ void mh_prince_reply(struct mh_prince *p, struct mh_prince_row *row)
                                                     .x_mm = p->node->place.x_mm,
                                                     .y_mm = p->node->place.y_mm,
                                                     .value_q20 = row->value,
-                                                    .share = (uint8_t)(share * 255.0f),
+                                                    .share = (uint8_t)mh_real_times(share, 255),
                                                     .others = others}};
     mh_prince_send(p, &message);
 }

@@ -8,21 +8,23 @@
 #define UNKNOWN_WATCH 15000 /* ... where it is not known how the target moves */
 #define LINGERING 2000      /* ticks for which a watcher stays at least that hears the target when its time is over */
 #define LONGEST_WATCH 300000
-#define KEPT 20000        /* ticks for which a row is kept after that */
-#define REGENT_WAIT 1000  /* ticks after the prince is due ... */
-#define REGENT_SPREAD 500 /* ... and up to so many more, ... */
-#define BORDER_WAIT 300   /* ... and these in the border */
-#define OTHERS_WAIT 200   /* ticks in which somebody else may ask first */
-#define QUERY_REST 200    /* ticks after the window of a query that was heard, until the next */
-#define SLACK_M 10.0f     /* that a target may be off where it is expected */
-#define FIX_SLACK_M 25.0f /* ... where the fix is a mirror image */
-#define NEAR_SLACK_M 5.0f /* ... as far as a competitor and an outer node care */
-#define UNKNOWN_MPS 20.0f /* that a target may go where nothing is known of it */
-#define EXPLAINED 1.5f    /* times the energy expected of the targets that are known, and what is heard is one more */
+#define KEPT 20000                 /* ticks for which a row is kept after that */
+#define REGENT_WAIT 1000           /* ticks after the prince is due ... */
+#define REGENT_SPREAD 500          /* ... and up to so many more, ... */
+#define BORDER_WAIT 300            /* ... and these in the border */
+#define OTHERS_WAIT 200            /* ticks in which somebody else may ask first */
+#define QUERY_REST 200             /* ticks after the window of a query that was heard, until the next */
+#define SLACK_M 10                 /* that a target may be off where it is expected */
+#define FIX_SLACK_M MH_REAL(25.0f) /* ... where the fix is a mirror image */
+#define NEAR_SLACK_M MH_REAL(5.0f) /* ... as far as a competitor and an outer node care */
+#define UNKNOWN_MPS MH_REAL(20.0f) /* that a target may go where nothing is known of it */
+#define EXPLAINED                                                                                                      \
+    MH_REAL(1.5f) /* times the energy expected of the targets that are known, and what is heard is one more */
 
 mh_real mh_prince_speed(const struct mh_prince_row *row)
 {
-    return mh_sqrt(mh_squared((mh_real)row->vx_cmps) + mh_squared((mh_real)row->vy_cmps)) * 0.01f;
+    const struct mh_vec2 cmps = {mh_real_from_int(row->vx_cmps), mh_real_from_int(row->vy_cmps)};
+    return mh_real_over(mh_vec2_length(cmps), 100);
 }
 
 struct mh_vec2 mh_prince_expected(const struct mh_prince *p, const struct mh_prince_row *row,
@@ -30,10 +32,7 @@ struct mh_vec2 mh_prince_expected(const struct mh_prince *p, const struct mh_pri
 {
     const struct mh_place fix = {row->x_mm, row->y_mm, 0};
     const mh_real seconds = mh_seconds_between(row->found, p->time);
-    struct mh_vec2 at = mh_place_relative(&fix, origin);
-    at.x += (mh_real)row->vx_cmps * 0.01f * seconds;
-    at.y += (mh_real)row->vy_cmps * 0.01f * seconds;
-    return at;
+    return mh_vec2_along(mh_place_relative(&fix, origin), seconds, mh_prince_velocity(row));
 }
 
 mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *row, mh_real *share, uint8_t *others)
@@ -42,12 +41,12 @@ mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *
     const mh_real range_m = 3 * p->config->sensing_range_m;
     struct mh_vec2 sources[MH_TARGETS_MAX];
     uint8_t count = 1;
-    mh_real own = 1;
+    mh_real own = MH_REAL(1.0f);
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *other = &p->rows[i];
         if (other != row && other->state != MH_PRINCE_FREE && other->fixed) {
             const struct mh_vec2 at = mh_prince_expected(p, other, &p->node->place);
-            if (mh_squared(at.x) + mh_squared(at.y) <= mh_squared(range_m)) {
+            if (mh_vec2_square(at) <= mh_wide_mul(range_m, range_m)) {
                 sources[count++] = at;
             }
         }
@@ -62,13 +61,13 @@ mh_real mh_prince_energy(const struct mh_prince *p, const struct mh_prince_row *
     if (others) {
         *others = (uint8_t)(count - 1);
     }
-    return own * mh_q20_to_real(p->value);
+    return mh_mul(own, mh_q20_to_real(p->value));
 }
 
 mh_real mh_prince_drift(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     const mh_real speed_mps = mh_prince_speed(row), drift_mps = speed_mps > 0 ? speed_mps : UNKNOWN_MPS;
-    return FIX_SLACK_M + drift_mps * mh_seconds_between(row->found, p->time);
+    return mh_add(FIX_SLACK_M, mh_mul(drift_mps, mh_seconds_between(row->found, p->time)));
 }
 
 /* What is expected at `place` of a target that is `slack_m` nearer than expected. */
@@ -76,8 +75,9 @@ static mh_real explained_by(const struct mh_prince *p, const struct mh_prince_ro
                             mh_real slack_m)
 {
     const struct mh_vec2 at = mh_prince_expected(p, row, place);
-    const mh_real distance_m = mh_sqrt(mh_squared(at.x) + mh_squared(at.y)) - slack_m;
-    return p->config->loudness_m2 * row->members / mh_squared(mh_max(distance_m, 1));
+    const mh_real distance_m = mh_max(mh_add(mh_vec2_length(at), -slack_m), MH_REAL(1.0f));
+    return mh_wide_ratio(mh_wide_mul(p->config->loudness_m2, mh_real_from_int(row->members)),
+                         mh_wide_mul(distance_m, distance_m));
 }
 
 /* What is expected here of all targets but `own`. */
@@ -87,7 +87,7 @@ static mh_real explained_by_others(const struct mh_prince *p, const struct mh_pr
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *row = &p->rows[i];
         if (row != own && row->state != MH_PRINCE_FREE && row->fixed) {
-            sum += explained_by(p, row, &p->node->place, NEAR_SLACK_M);
+            sum = mh_add(sum, explained_by(p, row, &p->node->place, NEAR_SLACK_M));
         }
     }
     return sum;
@@ -100,11 +100,11 @@ static bool is_unexplained(const struct mh_prince *p)
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *row = &p->rows[i];
         if (row->state != MH_PRINCE_FREE && row->fixed) {
-            sum += explained_by(p, row, &p->node->place, mh_prince_drift(p, row));
+            sum = mh_add(sum, explained_by(p, row, &p->node->place, mh_prince_drift(p, row)));
         }
     }
     const mh_real energy = mh_q20_to_real(p->value);
-    return energy >= 1 && energy > EXPLAINED * sum;
+    return energy >= MH_REAL(1.0f) && energy > mh_mul(EXPLAINED, sum);
 }
 
 bool mh_prince_is_new(const struct mh_prince *p)
@@ -121,7 +121,7 @@ void mh_prince_recognise(struct mh_prince *p, const struct mh_place *place, mh_q
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         struct mh_prince_row *row = &p->rows[i];
         if (row->state == MH_PRINCE_HEAD &&
-            mh_q20_to_real(value) <= EXPLAINED * explained_by(p, row, place, mh_prince_drift(p, row))) {
+            mh_q20_to_real(value) <= mh_mul(EXPLAINED, explained_by(p, row, place, mh_prince_drift(p, row)))) {
             mh_prince_remind(p, row);
         }
     }
@@ -133,7 +133,7 @@ bool mh_prince_is_known(const struct mh_prince *p, const struct mh_place *place)
     for (uint8_t i = 0; i < MH_TARGETS_MAX; i++) {
         const struct mh_prince_row *row = &p->rows[i];
         if (row->state != MH_PRINCE_FREE && row->fixed) {
-            known = known || explained_by(p, row, place, mh_prince_drift(p, row)) >= 1;
+            known = known || explained_by(p, row, place, mh_prince_drift(p, row)) >= MH_REAL(1.0f);
         }
     }
     return known;
@@ -143,7 +143,8 @@ bool mh_prince_is_known(const struct mh_prince *p, const struct mh_place *place)
 static bool is_in_time(const struct mh_prince *p, const struct mh_prince_row *row)
 {
     const mh_real speed_mps = mh_prince_speed(row);
-    const mh_tick slack = (mh_tick)(SLACK_M * 1000.0f / mh_max(speed_mps, 1));
+    const mh_tick slack =
+        (mh_tick)mh_real_times(mh_div(MH_REAL(SLACK_M * 1000.0f), mh_max(speed_mps, MH_REAL(1.0f))), 1);
     return !mh_tick_before(p->time, row->in - slack) && !mh_tick_before(row->out + slack, p->time);
 }
 
@@ -155,16 +156,16 @@ bool mh_prince_hears(const struct mh_prince *p, const struct mh_prince_row *row)
     if (!row->fixed) {
         return is_unexplained(p);
     }
-    if (energy < 1 || others == 0) {
-        return energy >= 1;
+    if (energy < MH_REAL(1.0f) || others == 0) {
+        return energy >= MH_REAL(1.0f);
     }
     switch (row->as) {
     case MH_NODE_COMPETITOR:
-        return share >= MH_PRINCE_SHARE && energy > EXPLAINED * explained_by_others(p, row);
+        return share >= MH_PRINCE_SHARE && energy > mh_mul(EXPLAINED, explained_by_others(p, row));
     case MH_NODE_OUTER:
-        return own >= 1 && energy > EXPLAINED * explained_by_others(p, row);
+        return own >= MH_REAL(1.0f) && energy > mh_mul(EXPLAINED, explained_by_others(p, row));
     default:
-        return own >= 1 && is_in_time(p, row);
+        return own >= MH_REAL(1.0f) && is_in_time(p, row);
     }
 }
 
@@ -193,21 +194,21 @@ void mh_prince_become_competitor(struct mh_prince *p, struct mh_prince_row *row,
 /* `seconds` after the fix, not past what a watcher waits for. */
 static mh_tick after_fix(const struct mh_prince_row *row, mh_real seconds)
 {
-    const mh_real longest = LONGEST_WATCH * 1e-3f;
-    return row->found + (mh_tick)(int32_t)(mh_clamp(seconds, -longest, longest) * 1000.0f);
+    const mh_real longest = MH_REAL(LONGEST_WATCH * 1e-3f);
+    return row->found + (mh_tick)mh_real_times(mh_clamp(seconds, -longest, longest), 1000);
 }
 
 /* When the target passes within `radius_m`, or where it never is so near, is nearest. */
 static void set_passage(const struct mh_prince *p, struct mh_prince_row *row, struct mh_vec2 node, mh_real radius_m)
 {
-    const struct mh_vec2 velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f};
-    const mh_real square = mh_squared(velocity.x) + mh_squared(velocity.y);
+    const struct mh_vec2 velocity = mh_prince_velocity(row);
+    const mh_wide square = mh_vec2_square(velocity);
     struct mh_time_window window;
     if (mh_time_window(node, velocity, radius_m, &window) == MH_OK) {
         row->in = after_fix(row, window.in);
         row->out = after_fix(row, window.out);
     } else if (square > 0) {
-        row->in = row->out = after_fix(row, (node.x * velocity.x + node.y * velocity.y) / square);
+        row->in = row->out = after_fix(row, mh_wide_ratio(mh_vec2_dot(node, velocity), square));
     } else {
         row->in = p->time;
         row->out = p->time + UNKNOWN_WATCH;
@@ -226,12 +227,11 @@ static void sleep_on(struct mh_prince *p, struct mh_prince_row *row)
 void mh_prince_classify(struct mh_prince *p, struct mh_prince_row *row, struct mh_vec2 head, mh_tick arms)
 {
     const struct mh_prince_config *config = p->config;
-    const mh_real extent_m = (mh_real)row->extent_cm * 0.01f;
+    const mh_real extent_m = mh_real_from_ratio(row->extent_cm, 100);
     const struct mh_strips strips = mh_strips(config->sensing_range_m, config->margin_m, config->outer_m, extent_m);
     const struct mh_place fix = {row->x_mm, row->y_mm, 0};
     const struct mh_vec2 node = mh_place_relative(&p->node->place, &fix);
-    const struct mh_course course = {.head = head,
-                                     .velocity = {(mh_real)row->vx_cmps * 0.01f, (mh_real)row->vy_cmps * 0.01f}};
+    const struct mh_course course = {.head = head, .velocity = mh_prince_velocity(row)};
     enum mh_node_class as = mh_node_class(&strips, &course, node);
     row->is_prince = row->prince == p->node->id;
     row->arms = arms;
