@@ -36,10 +36,24 @@ static inline mh_real mh_real_saturate(int64_t a)
 /* a + b, saturated; an infinite one stays infinite. */
 static inline mh_real mh_add(mh_real a, mh_real b)
 {
-    return !mh_finite(a) ? a : !mh_finite(b) ? b : mh_real_saturate((int64_t)a + b);
+    if (!mh_finite(a) || !mh_finite(b)) {
+        return mh_finite(a) ? b : a;
+    }
+    const bool over = b > 0 && a > MH_REAL_INFINITE - b, under = b < 0 && a < -MH_REAL_INFINITE - b;
+    return over ? MH_REAL_INFINITE : under ? -MH_REAL_INFINITE : a + b;
 }
 
+/* Whether the machine multiplies to 64 bits in a few instructions. Without, halves of 16 bits are quicker. */
+#if defined __ARM_ARCH_6M__ || defined __ARM_ARCH_8M_BASE__ || defined __AVR__ || defined __MSP430__
+#define MH_REAL_WIDE 0
 mh_real mh_mul(mh_real a, mh_real b);
+#else
+#define MH_REAL_WIDE 1
+static inline mh_real mh_mul(mh_real a, mh_real b)
+{
+    return mh_real_saturate(((int64_t)a * b + MH_REAL_ONE / 2) >> MH_REAL_BITS);
+}
+#endif
 mh_real mh_div(mh_real a, mh_real b);
 
 /* A product of two reals, exact, with 32 fractional bits; two of them may be added. */
