@@ -31,7 +31,7 @@ MATH = ("sqrt exp exp2 expm1 log log2 log10 log1p pow sin cos tan asin acos atan
 DOUBLE_RUNTIME = re.compile(r"^__(aeabi_(d\w+|cd\w+|\w+2d)|\w*df\w*)$")
 X86_DOUBLE = re.compile(r"^((add|sub|mul|div|sqrt|comi|ucomi|min|max)[sp]d|v?cvt\w*[sp]d(2\w+)?|f(ld|st|stp|add|sub|mul|div)l)$")
 ALLOWED = re.compile(
-    r"^(mem(cpy|move|set|cmp)"                                                     # the compiler itself calls these
+    r"^(mem(cpy|move|set|cmp|chr)"                                                 # the compiler itself calls the first four
     r"|__aeabi_mem(cpy|move|set|clr)[48]?"
     r"|__aeabi_(f\w+|cf\w+|u?i2f|u?l2f|u?idiv(mod)?|u?ldivmod|lmul|ll?s[lr]|lasr|u?lcmp)"  # float and integers, Arm
     r"|__gnu_thumb1_case_\w+"
