@@ -1,6 +1,7 @@
 #include "simulation.h"
 
 #include "network.h"
+#include "reals.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -208,7 +209,7 @@ static int bring_up(struct replay *replay, const struct scenario *scenario, uint
                                             .counts_min = INT32_MIN,
                                             .counts_max = INT32_MAX,
                                             .interval = replay->interval,
-                                            .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
+                                            .threshold = q20_of(scenario->tracker.chi),
                                             .report_always = kit->tracker.measures != QUANTITY_CONCENTRATION};
     mote_kit_complete(kit, scenario, (mh_tick)(replay->lead + phase));
     if (roster_complete(roster, scenario, error, error_size)) {

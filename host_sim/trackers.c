@@ -1,6 +1,7 @@
 #include "trackers.h"
 
 #include "radio/radio.h"
+#include "reals.h"
 #include "roster.h"
 #include "world/mobility.h"
 #include "world/targets.h"
@@ -15,9 +16,9 @@ static void set_up_luo(struct tracker_choice *choice, const struct scenario *sce
 {
     struct mh_luo_config *config = &choice->config.luo;
     mh_luo_config_default(config);
-    config->diffusion_m2ps = (mh_real)scenario->tracker.diffusion_m2ps;
-    config->chi = (mh_real)scenario->tracker.chi;
-    config->forgetting = (mh_real)scenario->tracker.forgetting;
+    config->diffusion_m2ps = real_of(scenario->tracker.diffusion_m2ps);
+    config->chi = real_of(scenario->tracker.chi);
+    config->forgetting = real_of(scenario->tracker.forgetting);
     config->nonlinear = scenario->tracker.nonlinear;
     if (region) {
         config->stop_outside = true;
@@ -30,11 +31,11 @@ static void set_up_diffusion(struct tracker_choice *choice, const struct scenari
 {
     struct mh_diffusion_config *config = &choice->config.diffusion;
     mh_diffusion_config_default(config);
-    config->diffusion_m2ps = (mh_real)scenario->tracker.diffusion_m2ps;
-    config->chi = (mh_real)scenario->tracker.chi;
-    config->release_gps = (mh_real)scenario->tracker.release_gps;
-    config->additive_sd = (mh_real)scenario->tracker.additive_sd;
-    config->relative_sd = (mh_real)scenario->tracker.relative_sd;
+    config->diffusion_m2ps = real_of(scenario->tracker.diffusion_m2ps);
+    config->chi = real_of(scenario->tracker.chi);
+    config->release_gps = real_of(scenario->tracker.release_gps);
+    config->additive_sd = real_of(scenario->tracker.additive_sd);
+    config->relative_sd = real_of(scenario->tracker.relative_sd);
     if (region) {
         config->region = *region;
     }
@@ -85,14 +86,14 @@ static void set_up_range(struct tracker_choice *choice, const struct scenario *s
     const struct known_target target = target_of(scenario, region);
     struct mh_range_config *config = &choice->config.range;
     mh_range_config_default(config);
-    config->range_sd_m = (mh_real)target.range_sd_m;
-    config->bias_sd_m = (mh_real)scenario->tracker.bias_sd_m;
-    config->scale_sd = (mh_real)scenario->tracker.scale_sd;
-    config->acceleration_sd_mps2 = (mh_real)target.acceleration_sd_mps2;
-    config->speed_mps = (mh_real)target.speed_mps;
-    config->height_m = (mh_real)target.height_m;
-    config->sensing_range_m = region ? (mh_real)scenario->sensor.range_m : 0;
-    config->tolerance_m = (mh_real)scenario->tracker.tolerance_m;
+    config->range_sd_m = real_of(target.range_sd_m);
+    config->bias_sd_m = real_of(scenario->tracker.bias_sd_m);
+    config->scale_sd = real_of(scenario->tracker.scale_sd);
+    config->acceleration_sd_mps2 = real_of(target.acceleration_sd_mps2);
+    config->speed_mps = real_of(target.speed_mps);
+    config->height_m = real_of(target.height_m);
+    config->sensing_range_m = region ? real_of(scenario->sensor.range_m) : 0;
+    config->tolerance_m = real_of(scenario->tracker.tolerance_m);
 }
 
 static void set_up_pftl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
@@ -100,11 +101,11 @@ static void set_up_pftl(struct tracker_choice *choice, const struct scenario *sc
     const struct known_target target = target_of(scenario, region);
     struct mh_pftl_config *config = &choice->config.pftl;
     mh_pftl_config_default(config);
-    config->speed_mps = (mh_real)target.speed_mps;
-    config->speed_sd_mps = (mh_real)target.speed_sd_mps;
-    config->sensing_range_m = (mh_real)scenario->sensor.range_m;
-    config->range_sd_m = (mh_real)target.range_sd_m;
-    config->tolerance_m = (mh_real)scenario->tracker.tolerance_m;
+    config->speed_mps = real_of(target.speed_mps);
+    config->speed_sd_mps = real_of(target.speed_sd_mps);
+    config->sensing_range_m = real_of(scenario->sensor.range_m);
+    config->range_sd_m = real_of(target.range_sd_m);
+    config->tolerance_m = real_of(scenario->tracker.tolerance_m);
     config->particles = (uint16_t)scenario->tracker.particles;
     config->literal = scenario->tracker.literal;
     config->systematic = scenario->tracker.resampling == RESAMPLING_SYSTEMATIC;
@@ -115,9 +116,9 @@ static void set_up_msl(struct tracker_choice *choice, const struct scenario *sce
     const struct known_target target = target_of(scenario, region);
     struct mh_msl_config *config = &choice->config.msl;
     mh_msl_config_default(config);
-    config->speed_mps = (mh_real)target.speed_mps;
-    config->speed_sd_mps = (mh_real)target.speed_sd_mps;
-    config->sensing_range_m = (mh_real)scenario->sensor.range_m;
+    config->speed_mps = real_of(target.speed_mps);
+    config->speed_sd_mps = real_of(target.speed_sd_mps);
+    config->sensing_range_m = real_of(scenario->sensor.range_m);
     config->particles = (uint16_t)scenario->tracker.particles;
 }
 
@@ -126,7 +127,7 @@ static void set_up_centroid(struct tracker_choice *choice, const struct scenario
 {
     (void)region;
     mh_centroid_config_default(&choice->config.centroid);
-    choice->config.centroid.sensing_range_m = (mh_real)scenario->sensor.range_m;
+    choice->config.centroid.sensing_range_m = real_of(scenario->sensor.range_m);
     if (scenario->sensor.quantity == QUANTITY_SOUND) {
         choice->measures = QUANTITY_SOUND;
         choice->config.centroid.strongest = 3; /* Han 2.1 */
@@ -138,7 +139,7 @@ static struct mh_white_acceleration motion_of(const struct scenario *scenario)
 {
     const double x = scenario->target.acceleration_x_mps2, y = scenario->target.acceleration_y_mps2;
     return (struct mh_white_acceleration){.tick = (mh_tick)lround(scenario->sensor.interval_s * MH_TICKS_PER_S),
-                                          .variance = {(mh_real)(x * x), (mh_real)(y * y)}};
+                                          .variance = {real_of(x * x), real_of(y * y)}};
 }
 
 /* Mean and packed covariance of the start, (x, vx, y, vy). */
@@ -151,8 +152,8 @@ static void start_of(const struct scenario *scenario, mh_real *mean, mh_real *co
         covariance[i] = 0;
     }
     for (int i = 0; i < MH_CV_STATES; i++) {
-        mean[i] = (mh_real)means[i];
-        covariance[MH_PACKED(i, i)] = (mh_real)(sds[i % 2] * sds[i % 2]);
+        mean[i] = real_of(means[i]);
+        covariance[MH_PACKED(i, i)] = real_of(sds[i % 2] * sds[i % 2]);
     }
 }
 
@@ -163,9 +164,9 @@ static void set_up_cv(struct tracker_choice *choice, const struct scenario *scen
     mh_cv_config_default(config);
     config->motion = motion_of(scenario);
     start_of(scenario, config->mean, config->covariance);
-    config->variance = (mh_real)(target.range_sd_m * target.range_sd_m);
+    config->variance = real_of(target.range_sd_m * target.range_sd_m);
     config->origin.z_mm = (int32_t)lround(1000 * target.height_m);
-    config->alpha = (mh_real)scenario->tracker.ukf_alpha;
+    config->alpha = real_of(scenario->tracker.ukf_alpha);
     if (scenario->fusion.rule != MH_FUSION_CENTRAL) {
         config->summary = mh_summary_kind_of(scenario->fusion.rule);
     }
@@ -175,7 +176,7 @@ void tracker_tell_clusters(struct tracker_choice *choice, const struct clusters 
 {
     for (size_t i = 0; i < clusters->node_count; i++) {
         const struct clustered_node *node = &clusters->nodes[i];
-        choice->noise[i] = (struct mh_cv_noise){node->id, (mh_real)node->range_variance_m2};
+        choice->noise[i] = (struct mh_cv_noise){node->id, real_of(node->range_variance_m2)};
     }
     choice->config.cv.noise = choice->noise;
     choice->config.cv.noise_count = (uint16_t)clusters->node_count;
@@ -201,22 +202,22 @@ static void set_up_gas(struct tracker_choice *choice, const struct scenario *sce
     const double noise_ppm = scenario->tracker.noise_ppm > 0 ? scenario->tracker.noise_ppm : scenario->sensor.noise_ppm;
     struct mh_gas_config *config = &choice->config.gas;
     mh_gas_config_default(config);
-    config->plume.diffusion_m2ps = (mh_real)scenario->source.mixing_m2ps;
-    config->plume.wind_mps = (mh_real)(scenario->wind.speed_mps * scenario->tracker.wind_scale);
-    config->plume.downwind.x = (mh_real)cos(towards_rad);
-    config->plume.downwind.y = (mh_real)sin(towards_rad);
-    config->unit = (mh_real)scenario->sensor.unit_ppm;
-    config->noise = (mh_real)fmax(noise_ppm / scenario->sensor.unit_ppm, least);
-    config->ukf.alpha = (mh_real)scenario->tracker.ukf_alpha;
-    config->ukf.beta = (mh_real)scenario->tracker.ukf_beta;
-    config->calm_step_m = (mh_real)scenario->tracker.calm_step_m;
-    config->calm_sd_m = (mh_real)scenario->tracker.calm_sd_m;
+    config->plume.diffusion_m2ps = real_of(scenario->source.mixing_m2ps);
+    config->plume.wind_mps = real_of(scenario->wind.speed_mps * scenario->tracker.wind_scale);
+    config->plume.downwind.x = real_of(cos(towards_rad));
+    config->plume.downwind.y = real_of(sin(towards_rad));
+    config->unit = real_of(scenario->sensor.unit_ppm);
+    config->noise = real_of(fmax(noise_ppm / scenario->sensor.unit_ppm, least));
+    config->ukf.alpha = real_of(scenario->tracker.ukf_alpha);
+    config->ukf.beta = real_of(scenario->tracker.ukf_beta);
+    config->calm_step_m = real_of(scenario->tracker.calm_step_m);
+    config->calm_sd_m = real_of(scenario->tracker.calm_sd_m);
     const struct scenario_prior prior = scenario_prior(scenario);
     config->prior = place_from_metres(prior.x_m, prior.y_m, 0);
-    config->prior_sd_m.x = (mh_real)prior.sd_x_m;
-    config->prior_sd_m.y = (mh_real)prior.sd_y_m;
-    config->prior_rate = (mh_real)prior.rate;
-    config->prior_rate_sd = (mh_real)prior.rate_sd;
+    config->prior_sd_m.x = real_of(prior.sd_x_m);
+    config->prior_sd_m.y = real_of(prior.sd_y_m);
+    config->prior_rate = real_of(prior.rate);
+    config->prior_rate_sd = real_of(prior.rate_sd);
     if (region) {
         config->area = *region;
     }
@@ -225,7 +226,7 @@ static void set_up_gas(struct tracker_choice *choice, const struct scenario *sce
 /* C of source.loudness. */
 static mh_real loudness_of(const struct scenario *scenario)
 {
-    return (mh_real)(scenario->source.loudness * scenario->sensor.range_m * scenario->sensor.range_m);
+    return real_of(scenario->source.loudness * scenario->sensor.range_m * scenario->sensor.range_m);
 }
 
 static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
@@ -234,21 +235,21 @@ static void set_up_acoustic(struct tracker_choice *choice, const struct scenario
     const bool joint = choice->tracker == &mh_tracker_acoustic; /* the others cannot */
     const double least = 1e-3, slowest_mps = 0.1;               /* of a sensor without noise; what the tracker bears */
     struct mh_acoustic_config *config = &choice->config.acoustic;
-    mh_acoustic_config_default(config, (mh_real)scenario->sensor.range_m);
+    mh_acoustic_config_default(config, real_of(scenario->sensor.range_m));
     config->sound.loudness_m2 = loudness_of(scenario);
-    config->sound.source_sd = (mh_real)scenario->sensor.source_noise;
-    config->sound.background_sd = (mh_real)fmax(scenario->sensor.background_noise, least);
+    config->sound.source_sd = real_of(scenario->sensor.source_noise);
+    config->sound.background_sd = real_of(fmax(scenario->sensor.background_noise, least));
     config->variant = scenario->tracker.variant;
     config->intervals = (uint8_t)scenario->tracker.intervals;
     config->strongest = (uint8_t)(scenario->tracker.strongest > 0 ? scenario->tracker.strongest : UINT8_MAX);
     config->separation = scenario->tracker.separation == MH_SEPARATION_JOINT && !joint ? MH_SEPARATION_DECOMPOSITION
                                                                                        : scenario->tracker.separation;
     if (scenario->tracker.share_range_m > 0) {
-        config->share_range_m = (mh_real)scenario->tracker.share_range_m;
+        config->share_range_m = real_of(scenario->tracker.share_range_m);
     }
     config->filtered = scenario->tracker.filtered;
     config->mirror_check = scenario->protocol.guards > 0;
-    config->speed_mps = (mh_real)fmax(target_of(scenario, region).speed_mps, slowest_mps);
+    config->speed_mps = real_of(fmax(target_of(scenario, region).speed_mps, slowest_mps));
     mh_group_config_default(&config->group, scenario->tracker.groups);
 }
 
@@ -368,15 +369,15 @@ int tracker_choose_of_recording(const struct scenario *scenario, const struct re
     choice->tracker = &mh_tracker_gas_wind;
     choice->measures = QUANTITY_GAS;
     mh_gas_wind_config_default(config);
-    config->place_sd_m = (mh_real)fmin(set_places(config, recording, scenario->tracker.place_sd_m), 1000);
-    config->unit = (mh_real)unit_ppm;
-    config->mixing_m = (mh_real)scenario->tracker.mixing_m;
-    config->direction_sd_rad = (mh_real)scenario->tracker.wind_sd_rad;
-    config->background.quantile = (mh_real)scenario->tracker.background_quantile;
-    config->background.step = (mh_real)(scenario->tracker.background_ppmph * hours / unit_ppm);
+    config->place_sd_m = real_of(fmin(set_places(config, recording, scenario->tracker.place_sd_m), 1000));
+    config->unit = real_of(unit_ppm);
+    config->mixing_m = real_of(scenario->tracker.mixing_m);
+    config->direction_sd_rad = real_of(scenario->tracker.wind_sd_rad);
+    config->background.quantile = real_of(scenario->tracker.background_quantile);
+    config->background.step = real_of(scenario->tracker.background_ppmph * hours / unit_ppm);
     config->learn = ticks(scenario->tracker.learn_s);
     config->memory = ticks(scenario->tracker.memory_s);
-    config->correlation = (mh_real)fmax(scenario->tracker.correlation_s / interval_s, 1);
+    config->correlation = real_of(fmax(scenario->tracker.correlation_s / interval_s, 1));
     return 0;
 }
 
@@ -406,8 +407,8 @@ struct mh_election_config election_config_of(const struct scenario *scenario)
     }
     config.horizon = (uint8_t)scenario->protocol.horizon;
     config.least_answers = (uint8_t)scenario->protocol.least_answers;
-    config.sensing_range_m = (mh_real)scenario->sensor.range_m;
-    config.radio_range_m = (mh_real)radio_nominal_range_m(scenario);
+    config.sensing_range_m = real_of(scenario->sensor.range_m);
+    config.radio_range_m = real_of(radio_nominal_range_m(scenario));
     config.interval = ticks(scenario->sensor.interval_s);
     return config;
 }
@@ -507,13 +508,13 @@ static void set_up_prince(struct protocol_choice *choice, const struct scenario 
     choice->protocol = &mh_protocol_prince;
     choice->in_turns = true;
     mh_prince_config_default(config, (enum mh_prince_election)(scenario->protocol.election - ELECTION_PRINCE),
-                             scenario->protocol.guards > 0, (mh_real)scenario->sensor.range_m,
-                             (mh_real)radio_nominal_range_m(scenario));
+                             scenario->protocol.guards > 0, real_of(scenario->sensor.range_m),
+                             real_of(radio_nominal_range_m(scenario)));
     config->port = &mh_mote_prince;
     config->replies = (uint8_t)scenario->protocol.replies;
     config->farthest = scenario->protocol.farthest;
     config->loudness_m2 = loudness_of(scenario);
-    config->step_m = (mh_real)scenario->protocol.lead_m;
+    config->step_m = real_of(scenario->protocol.lead_m);
     config->tick = ticks(scenario->sensor.interval_s);
     config->watch_period = ticks(scenario->protocol.watch_s);
     config->wake_period = ticks(scenario->radio.wake_period_s);

@@ -1,6 +1,7 @@
 #include "hosts/worker_wire.h"
 
 #include "bus/bus.h"
+#include "reals.h"
 #include "scenario/text.h"
 
 #include <errno.h>
@@ -210,26 +211,26 @@ static struct mh_estimate estimate_read(const motehound_worker_estimate_t *messa
     struct mh_estimate estimate = {
         .origin = {message->origin_mm[0], message->origin_mm[1], message->origin_mm[2]},
         .time = (mh_tick)message->time_ticks,
-        .position = {(mh_real)message->position_m[0], (mh_real)message->position_m[1]},
-        .velocity = {(mh_real)message->velocity_mps[0], (mh_real)message->velocity_mps[1]},
-        .covariance = {.xx = (mh_real)message->covariance_m2[0],
-                       .xy = (mh_real)message->covariance_m2[1],
-                       .yy = (mh_real)message->covariance_m2[2]},
-        .raw = {(mh_real)message->raw_m[0], (mh_real)message->raw_m[1]},
-        .stored = {(mh_real)message->stored_m[0], (mh_real)message->stored_m[1]},
-        .stored_velocity = {(mh_real)message->stored_velocity_mps[0], (mh_real)message->stored_velocity_mps[1]},
-        .age = (mh_real)message->age_s,
+        .position = {real_of(message->position_m[0]), real_of(message->position_m[1])},
+        .velocity = {real_of(message->velocity_mps[0]), real_of(message->velocity_mps[1])},
+        .covariance = {.xx = real_of(message->covariance_m2[0]),
+                       .xy = real_of(message->covariance_m2[1]),
+                       .yy = real_of(message->covariance_m2[2])},
+        .raw = {real_of(message->raw_m[0]), real_of(message->raw_m[1])},
+        .stored = {real_of(message->stored_m[0]), real_of(message->stored_m[1])},
+        .stored_velocity = {real_of(message->stored_velocity_mps[0]), real_of(message->stored_velocity_mps[1])},
+        .age = real_of(message->age_s),
         .measurements = (uint16_t)message->measurements,
         .target = (uint32_t)message->target,
         .near = (uint32_t)message->near,
-        .extent = (mh_real)message->extent_m,
-        .rate = (mh_real)message->rate,
+        .extent = real_of(message->extent_m),
+        .rate = real_of(message->rate),
         .members = (uint8_t)message->members,
         .mode = (uint8_t)message->mode,
         .states = (uint8_t)message->states,
         .flags = (uint16_t)message->flags};
     for (size_t i = 0; i < COVARIANCE_MORE; i++) {
-        estimate.covariance_more[i] = (mh_real)message->covariance_more[i];
+        estimate.covariance_more[i] = real_of(message->covariance_more[i]);
     }
     for (size_t i = 0; i < MH_GROUP_MAX; i++) {
         estimate.of[i] = (uint32_t)message->of[i];

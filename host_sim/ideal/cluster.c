@@ -5,6 +5,7 @@
 #include "ideal/vicinity.h"
 #include "motehound/election.h"
 #include "motehound/followed.h"
+#include "reals.h"
 #include "roster.h"
 #include "world/ranging.h"
 #include "world/trajectory.h"
@@ -103,7 +104,7 @@ static void take_answers(struct run *run)
                 (struct mh_measurement){.node = run->vicinity.id[node],
                                         .place = run->vicinity.place[node],
                                         .time = instant_of(run),
-                                        .value = mh_q20_from_real((mh_real)run->range_m[node])};
+                                        .value = q20_of(run->range_m[node])};
         }
     }
     qsort(run->answers, run->answer_count, sizeof *run->answers, by_node);

@@ -1,6 +1,7 @@
 #include "ideal/fixed.h"
 
 #include "engine/random.h"
+#include "reals.h"
 #include "roster.h"
 #include "world/ranging.h"
 #include "world/trajectory.h"
@@ -47,7 +48,7 @@ static void take_samples(struct run *run)
                 (struct mh_measurement){.node = node->id,
                                         .place = place_from_metres(node->x_m, node->y_m, node->z_m),
                                         .time = now(run),
-                                        .value = mh_q20_from_real((mh_real)range_m)};
+                                        .value = q20_of(range_m)};
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #include "motehound/acoustic.h"
 #include "motehound/source_count.h"
+#include "reals.h"
 #include "roster.h"
 #include "world/identify.h"
 #include "world/sound.h"
@@ -85,7 +86,7 @@ static void hear(struct run *run)
             run->heard[run->heard_count++] = (struct mh_measurement){.node = node->id,
                                                                      .place = place_from_metres(at.x_m, at.y_m, 0),
                                                                      .time = now(run),
-                                                                     .value = mh_q20_from_real((mh_real)y)};
+                                                                     .value = q20_of(y)};
         }
     }
     run->measurements += run->heard_count;
@@ -221,17 +222,17 @@ static void begin_tracks(struct run *run, const struct company *company)
     static const struct mh_estimate nothing = {.flags = MH_ESTIMATE_STARTED};
     struct mh_place places[MH_GROUP_MAX] = {place_from_metres(company->centre.x_m, company->centre.y_m, 0)};
     const uint8_t count = company->count > 1 ? count_sources(run, company->centre, places) : 1;
-    const struct mh_vec2 velocity = {(mh_real)company->velocity.x_m, (mh_real)company->velocity.y_m};
+    const struct mh_vec2 velocity = {real_of(company->velocity.x_m), real_of(company->velocity.y_m)};
     struct track *track = count > 0 ? add_track(run, (uint32_t)company->members[0] + 1) : NULL;
     if (track == NULL) {
         return;
     }
     if (count > 1) {
         (void)mh_acoustic_begin_group(track->state, track->target, now(run), places, count, velocity,
-                                      (mh_real)known_sd_m, (mh_real)known_sd_mps);
+                                      real_of(known_sd_m), real_of(known_sd_mps));
     } else {
-        (void)mh_acoustic_begin(track->state, track->target, now(run), &places[0], velocity, (mh_real)known_sd_m,
-                                (mh_real)known_sd_mps);
+        (void)mh_acoustic_begin(track->state, track->target, now(run), &places[0], velocity, real_of(known_sd_m),
+                                real_of(known_sd_mps));
     }
     look_again(run, track, &nothing);
 }

@@ -1,6 +1,7 @@
 #include "ideal/token.h"
 
 #include "ideal/vicinity.h"
+#include "reals.h"
 #include "roster.h"
 #include "world/campaign.h"
 #include "world/gas.h"
@@ -40,7 +41,7 @@ static void take_sample(struct run *run, uint32_t node)
     run->heard[run->count++] = (struct mh_measurement){.node = run->vicinity.id[node],
                                                        .place = run->vicinity.place[node],
                                                        .time = (mh_tick)(run->heads * run->interval),
-                                                       .value = mh_q20_from_real((mh_real)value)};
+                                                       .value = q20_of(value)};
 }
 
 static int by_node(const void *a, const void *b)

@@ -1,3 +1,4 @@
+#include "reals.h"
 #include "world/sensor.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ struct mh_sensor_config sensor_config(const struct scenario *scenario)
                                 : -counts_max,
         .counts_max = counts_max,
         .interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S),
-        .threshold = mh_q20_from_real((mh_real)scenario->tracker.chi),
+        .threshold = q20_of(scenario->tracker.chi),
         .report_always = negative || scenario->source.path == PATH_NONE,
     };
 }

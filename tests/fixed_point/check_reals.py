@@ -2,12 +2,15 @@
 """Looks for expressions that mean something with mh_real as float and something else with mh_real as a fixed-point number, in clang's syntax trees of the
 library's fixed-point sources: mh_real is a type of its own there, though the compiler takes it for the integer that it is.
 
-    check_reals.py CLANG SOURCE... -- FLAG...
+    check_reals.py CLANG compile_commands.json FOLDER...
 
-Each finding is a line FILE:LINE: what. Exit status 1 if there are any."""
+reads what compile_commands.json compiles out of the folders. Each finding is a line FILE:LINE: what. Exit status 1 if there are any."""
 
 import json
+import multiprocessing
+import os
 import re
+import shlex
 import subprocess
 import sys
 
@@ -117,10 +120,13 @@ class Reader:
         elif kind == "ConditionalOperator":
             if {self.real(inner[1]), self.real(inner[2])} == {True, False}:
                 self.say(node, "mh_real or integer")
-        elif kind == "ImplicitCastExpr" and node.get("castKind") == "IntegralCast" and self.real(inner[0]):
+        elif kind == "ImplicitCastExpr" and node.get("castKind") in ("IntegralCast", "IntegralToFloating") and self.real(inner[0]):
             if bare(node["type"]["qualType"]) not in WIDE:
                 self.say(node, "mh_real becomes %s" % node["type"]["qualType"])
-        elif kind == "CStyleCastExpr" and node.get("castKind") not in ("FloatingToIntegral", "ToVoid"):
+        elif kind in ("CStyleCastExpr", "ImplicitCastExpr") and node.get("castKind") == "FloatingToIntegral":
+            if bare(node["type"]["qualType"]) == "mh_real":
+                self.say(node, "a floating-point number becomes mh_real")
+        elif kind == "CStyleCastExpr" and node.get("castKind") != "ToVoid":
             wanted = bare(node["type"]["qualType"])
             if wanted == "mh_real":
                 self.taken(inner[0], wanted, "cast")
@@ -153,21 +159,29 @@ class Reader:
                 self.check(child, returns)
 
 
+def findings(job):
+    clang, folder, command = job
+    words = shlex.split(command)
+    flags = [word for at, word in enumerate(words) if word[:2] in ("-I", "-D") or "-isystem" in (word, words[at - 1])]
+    dump = subprocess.run([clang, "-std=c99", "-fsyntax-only", "-Xclang", "-ast-dump=json", *flags, words[-1]], cwd=folder, stdout=subprocess.PIPE, check=True)
+    reader = Reader()
+    tree = json.loads(dump.stdout)
+    reader.mark(tree)
+    reader.check(tree)
+    return reader.found
+
+
 def main():
-    at = sys.argv.index("--")
-    clang, sources, flags = sys.argv[1], sys.argv[2:at], sys.argv[at + 1 :]
-    found = set()
-    for source in sources:
-        dump = subprocess.run([clang, "-std=c99", "-fsyntax-only", "-Xclang", "-ast-dump=json", "-DMH_REAL_FIXED=1", *flags, source],
-                              stdout=subprocess.PIPE, check=True).stdout
-        reader = Reader()
-        tree = json.loads(dump)
-        reader.mark(tree)
-        reader.check(tree)
-        found |= reader.found
+    clang, database, folders = sys.argv[1], sys.argv[2], tuple(os.path.realpath(folder) + os.sep for folder in sys.argv[3:])
+    with open(database) as file:
+        jobs = {entry["file"]: (clang, entry["directory"], entry["command"]) for entry in json.load(file)}
+    jobs = [job for name, job in sorted(jobs.items()) if os.path.realpath(name).startswith(folders)]
+    with multiprocessing.Pool(2) as pool:
+        found = set().union(*pool.imap_unordered(findings, jobs))
     for line in sorted(found):
         print(line)
-    return 1 if found else 0
+    print("%d sources, %d findings" % (len(jobs), len(found)))
+    return 1 if found or not jobs else 0
 
 
 if __name__ == "__main__":
