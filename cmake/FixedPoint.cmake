@@ -1,13 +1,15 @@
-# What there is in fixed point (MH_REAL=fixed): sources under firmware/src, and unit tests under tests/unit/firmware. All else needs float.
+# What there is in fixed point (MH_REAL=fixed): sources under firmware/src, and unit tests under tests/unit. All else needs float.
 set(MOTEHOUND_FIXED_POINT_SOURCES
   base/geometry
   base/real_fixed
+  estimate/decomposition
   estimate/followed
   estimate/node_class
   estimate/sensor
   model/time_window
   mote/head
   mote/mote
+  mote/mote_prince
   protocol/clock
   protocol/cluster
   protocol/cluster_head
@@ -21,6 +23,13 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   protocol/link
   protocol/neighbours
   protocol/parcel
+  protocol/prince
+  protocol/prince_compete
+  protocol/prince_group
+  protocol/prince_head
+  protocol/prince_query
+  protocol/prince_stamp
+  protocol/prince_watch
   protocol/rendezvous
   protocol/shunned
   protocol/vicinity
@@ -42,4 +51,9 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_sensor
   test_vicinity
   test_wire
+)
+set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
+  test_identify
+  test_scenario
+  test_sensor_world
 )

@@ -131,7 +131,7 @@ static void on_air(void *context, sim_time time, uint32_t sender, uint32_t desti
 
 static bool follows_search(const struct network *network)
 {
-    return network->config.observer->cluster && network->config.roster->kit.protocol.protocol == &mh_protocol_token;
+    return network->config.observer->cluster && protocol_is(network->config.roster->kit.protocol.protocol, "token");
 }
 
 /* An answer to a head has come to mote `receiver`: to a token's whoever it is for, by `prince` to who has asked. */

@@ -11,10 +11,9 @@ static inline mh_real real_of(double a)
 {
 #if MH_REAL_FIXED
     const double scaled = a * MH_REAL_ONE;
-    return scaled >= MH_REAL_INFINITE    ? MH_REAL_INFINITE
-           : scaled <= -MH_REAL_INFINITE ? -MH_REAL_INFINITE
-           : isnan(scaled)               ? MH_REAL_INFINITE
-                                         : mh_real_from_bits((int32_t)lround(scaled));
+    return isnan(scaled) || scaled >= INT32_MAX ? MH_REAL_INFINITE
+           : scaled <= -INT32_MAX               ? -MH_REAL_INFINITE
+                                                : mh_real_from_bits((int32_t)lround(scaled));
 #else
     return (mh_real)a;
 #endif
@@ -23,7 +22,7 @@ static inline mh_real real_of(double a)
 static inline double number_of(mh_real a)
 {
 #if MH_REAL_FIXED
-    return mh_finite(a) ? (double)a / MH_REAL_ONE : a > 0 ? (double)INFINITY : -(double)INFINITY;
+    return mh_finite(a) ? (double)mh_real_to_bits(a) / MH_REAL_ONE : a > 0 ? (double)INFINITY : -(double)INFINITY;
 #else
     return (double)a;
 #endif

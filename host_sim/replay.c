@@ -94,7 +94,7 @@ static void report(void *context, uint32_t mote, double now_s, double time_s, co
     const struct replay *replay = context;
     if (replay->observer->estimate) {
         const struct truth at_time = truth_at(replay->recording, time_s);
-        const struct truth at_arrival = truth_at(replay->recording, time_s - (double)estimate->age);
+        const struct truth at_arrival = truth_at(replay->recording, time_s - number_of(estimate->age));
         replay->observer->estimate(replay->observer->context, now_s, roster_id(&replay->roster, mote), estimate,
                                    &at_time, &at_arrival);
     }
@@ -112,7 +112,7 @@ static void read(struct replay *replay, const struct recorded_reading *reading)
 {
     const uint32_t mote = replay->motes[reading->node];
     network_reading(&replay->network, mote, q20(reading->value), reading->target);
-    if (replay->roster.kit.tracker.tracker == &mh_tracker_gas_wind) {
+    if (replay->roster.kit.tracker.wants_wind) {
         network_reading(&replay->network, mote, q20(reading->wind_x_mps), MH_TARGET_WIND_X);
         network_reading(&replay->network, mote, q20(reading->wind_y_mps), MH_TARGET_WIND_Y);
     }

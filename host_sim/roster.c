@@ -91,13 +91,12 @@ int mote_kit_make(struct mote_kit *kit, const struct scenario *scenario, char *e
         protocol_tell_clusters(&kit->protocol, &kit->clusters);
     }
     if (kit->protocol.own_rates) {
-        tracker_tell_clusters(&kit->tracker, &kit->clusters);
-        kit->head.lateness = kit->tracker.config.cv.lag;
+        kit->head.lateness = tracker_tell_clusters(&kit->tracker, &kit->clusters);
     }
-    if (kit->protocol.protocol == &mh_protocol_prince) {
+    if (protocol_is(kit->protocol.protocol, "prince")) {
         kit->sensor.interval = 1; /* it samples when it likes */
     } else if (kit->protocol.in_turns) {
-        const bool walks = kit->protocol.protocol == &mh_protocol_token;
+        const bool walks = protocol_is(kit->protocol.protocol, "token");
         kit->head.window = walks ? kit->protocol.config.token.window : kit->protocol.config.cluster.window;
         kit->head.own_first = walks;
         kit->head.tolerance = kit->head.interval / 4; /* who is asked samples when he hears it */
@@ -131,7 +130,7 @@ void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place p
     } else if (kit->protocol.fixed) {
         kit->protocol.config.fixed.sink = sink;
         kit->protocol.config.fixed.sink_place = place;
-    } else if (kit->protocol.protocol == &mh_protocol_token) {
+    } else if (protocol_is(kit->protocol.protocol, "token")) {
         kit->protocol.config.token.sink = sink;
         kit->protocol.config.token.sink_place = place;
     }
@@ -139,7 +138,7 @@ void mote_kit_tell_sink(struct mote_kit *kit, mh_node_id sink, struct mh_place p
 
 void mote_kit_tell_start(struct mote_kit *kit, mh_node_id start, struct mh_place place)
 {
-    if (kit->protocol.protocol == &mh_protocol_token) {
+    if (protocol_is(kit->protocol.protocol, "token")) {
         kit->protocol.config.token.start = start;
         kit->protocol.config.token.start_place = place;
     }
@@ -170,7 +169,7 @@ int roster_complete(struct roster *roster, const struct scenario *scenario, char
     roster->sink_x_m = field.sink_x_m;
     roster->sink_y_m = field.sink_y_m;
     mote_kit_tell_sink(&roster->kit, roster->sink_id, place_from_metres(field.sink_x_m, field.sink_y_m, 0));
-    if (roster->kit.protocol.protocol == &mh_protocol_token && tell_start(roster, scenario, error, error_size)) {
+    if (protocol_is(roster->kit.protocol.protocol, "token") && tell_start(roster, scenario, error, error_size)) {
         return -1;
     }
     return protocol_tell_entries(&roster->kit.protocol, scenario, roster->seed, error, error_size);

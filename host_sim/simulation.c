@@ -2,6 +2,7 @@
 
 #include "ideal/ideal.h"
 #include "network.h"
+#include "reals.h"
 #include "world/field.h"
 #include "world/gas.h"
 #include "world/identify.h"
@@ -97,7 +98,7 @@ static void report(void *context, uint32_t mote, double now_s, double time_s, co
         }
     } else if (run->observer->estimate && (!run->roster.kit.protocol.own_rates || is_reported(run, estimate))) {
         const struct truth at_time = truth_behind(run, estimate, time_s);
-        const struct truth at_arrival = truth_behind(run, estimate, time_s - (double)estimate->age);
+        const struct truth at_arrival = truth_behind(run, estimate, time_s - number_of(estimate->age));
         run->observer->estimate(run->observer->context, now_s, roster_id(&run->roster, mote), estimate, &at_time,
                                 &at_arrival);
     }

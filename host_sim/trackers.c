@@ -12,6 +12,29 @@
 
 static mh_tick ticks(double seconds) { return (mh_tick)lround(seconds * MH_TICKS_PER_S); }
 
+/* ---- trackers that exist in both arithmetics ---- */
+
+/* C of source.loudness. */
+static mh_real loudness_of(const struct scenario *scenario)
+{
+    return real_of(scenario->source.loudness * scenario->sensor.range_m * scenario->sensor.range_m);
+}
+
+#if MOTEHOUND_HAS_CENTROID
+static void set_up_centroid(struct tracker_choice *choice, const struct scenario *scenario,
+                            const struct mh_region *region)
+{
+    (void)region;
+    mh_centroid_config_default(&choice->config.centroid);
+    choice->config.centroid.sensing_range_m = real_of(scenario->sensor.range_m);
+    if (scenario->sensor.quantity == QUANTITY_SOUND) {
+        choice->measures = QUANTITY_SOUND;
+        choice->config.centroid.strongest = 3; /* Han 2.1 */
+    }
+}
+#endif
+
+#if MOTEHOUND_HAS_LUO
 static void set_up_luo(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
     struct mh_luo_config *config = &choice->config.luo;
@@ -25,22 +48,9 @@ static void set_up_luo(struct tracker_choice *choice, const struct scenario *sce
         config->region = *region;
     }
 }
+#endif
 
-static void set_up_diffusion(struct tracker_choice *choice, const struct scenario *scenario,
-                             const struct mh_region *region)
-{
-    struct mh_diffusion_config *config = &choice->config.diffusion;
-    mh_diffusion_config_default(config);
-    config->diffusion_m2ps = real_of(scenario->tracker.diffusion_m2ps);
-    config->chi = real_of(scenario->tracker.chi);
-    config->release_gps = real_of(scenario->tracker.release_gps);
-    config->additive_sd = real_of(scenario->tracker.additive_sd);
-    config->relative_sd = real_of(scenario->tracker.relative_sd);
-    if (region) {
-        config->region = *region;
-    }
-}
-
+#if MOTEHOUND_HAS_PFTL
 /* What a tracker knows of the target: what the scenario tells it, or else how it is. Where it comes from a recording there is no `region`, and
  * nothing is known. */
 struct known_target {
@@ -81,6 +91,87 @@ static struct known_target target_of(const struct scenario *scenario, const stru
     return target;
 }
 
+static uint32_t draws_of_pftl(const void *state) { return ((const struct mh_pftl *)state)->draws; }
+
+static void set_up_pftl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
+{
+    const struct known_target target = target_of(scenario, region);
+    struct mh_pftl_config *config = &choice->config.pftl;
+    mh_pftl_config_default(config);
+    choice->seed = &config->seed;
+    choice->draws = draws_of_pftl;
+    config->speed_mps = real_of(target.speed_mps);
+    config->speed_sd_mps = real_of(target.speed_sd_mps);
+    config->sensing_range_m = real_of(scenario->sensor.range_m);
+    config->range_sd_m = real_of(target.range_sd_m);
+    config->tolerance_m = real_of(scenario->tracker.tolerance_m);
+    config->particles = (uint16_t)scenario->tracker.particles;
+    config->literal = scenario->tracker.literal;
+    config->systematic = scenario->tracker.resampling == RESAMPLING_SYSTEMATIC;
+}
+#endif
+
+/* ---- trackers that need float ---- */
+
+#if MH_REAL_FIXED
+#define FLOAT_ONLY(tracker, set_up) NULL, NULL
+
+mh_tick tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters)
+{
+    (void)choice;
+    (void)clusters;
+    return 0;
+}
+
+void centre_choose(const struct scenario *scenario, size_t count, struct centre_choice *choice)
+{
+    (void)scenario;
+    (void)count;
+    choice->centre = NULL;
+}
+
+#else
+#define FLOAT_ONLY(tracker, set_up) &tracker, set_up
+
+static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
+                            const struct mh_region *region)
+{
+    const bool joint = choice->tracker == &mh_tracker_acoustic; /* the others cannot */
+    const double least = 1e-3, slowest_mps = 0.1;               /* of a sensor without noise; what the tracker bears */
+    struct mh_acoustic_config *config = &choice->config.acoustic;
+    mh_acoustic_config_default(config, real_of(scenario->sensor.range_m));
+    config->sound.loudness_m2 = loudness_of(scenario);
+    config->sound.source_sd = real_of(scenario->sensor.source_noise);
+    config->sound.background_sd = real_of(fmax(scenario->sensor.background_noise, least));
+    config->variant = scenario->tracker.variant;
+    config->intervals = (uint8_t)scenario->tracker.intervals;
+    config->strongest = (uint8_t)(scenario->tracker.strongest > 0 ? scenario->tracker.strongest : UINT8_MAX);
+    config->separation = scenario->tracker.separation == MH_SEPARATION_JOINT && !joint ? MH_SEPARATION_DECOMPOSITION
+                                                                                       : scenario->tracker.separation;
+    if (scenario->tracker.share_range_m > 0) {
+        config->share_range_m = real_of(scenario->tracker.share_range_m);
+    }
+    config->filtered = scenario->tracker.filtered;
+    config->mirror_check = scenario->protocol.guards > 0;
+    config->speed_mps = real_of(fmax(target_of(scenario, region).speed_mps, slowest_mps));
+    mh_group_config_default(&config->group, scenario->tracker.groups);
+}
+
+static void set_up_diffusion(struct tracker_choice *choice, const struct scenario *scenario,
+                             const struct mh_region *region)
+{
+    struct mh_diffusion_config *config = &choice->config.diffusion;
+    mh_diffusion_config_default(config);
+    config->diffusion_m2ps = real_of(scenario->tracker.diffusion_m2ps);
+    config->chi = real_of(scenario->tracker.chi);
+    config->release_gps = real_of(scenario->tracker.release_gps);
+    config->additive_sd = real_of(scenario->tracker.additive_sd);
+    config->relative_sd = real_of(scenario->tracker.relative_sd);
+    if (region) {
+        config->region = *region;
+    }
+}
+
 static void set_up_range(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
     const struct known_target target = target_of(scenario, region);
@@ -96,42 +187,19 @@ static void set_up_range(struct tracker_choice *choice, const struct scenario *s
     config->tolerance_m = real_of(scenario->tracker.tolerance_m);
 }
 
-static void set_up_pftl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
-{
-    const struct known_target target = target_of(scenario, region);
-    struct mh_pftl_config *config = &choice->config.pftl;
-    mh_pftl_config_default(config);
-    config->speed_mps = real_of(target.speed_mps);
-    config->speed_sd_mps = real_of(target.speed_sd_mps);
-    config->sensing_range_m = real_of(scenario->sensor.range_m);
-    config->range_sd_m = real_of(target.range_sd_m);
-    config->tolerance_m = real_of(scenario->tracker.tolerance_m);
-    config->particles = (uint16_t)scenario->tracker.particles;
-    config->literal = scenario->tracker.literal;
-    config->systematic = scenario->tracker.resampling == RESAMPLING_SYSTEMATIC;
-}
+static uint32_t draws_of_msl(const void *state) { return ((const struct mh_msl *)state)->draws; }
 
 static void set_up_msl(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
     const struct known_target target = target_of(scenario, region);
     struct mh_msl_config *config = &choice->config.msl;
     mh_msl_config_default(config);
+    choice->seed = &config->seed;
+    choice->draws = draws_of_msl;
     config->speed_mps = real_of(target.speed_mps);
     config->speed_sd_mps = real_of(target.speed_sd_mps);
     config->sensing_range_m = real_of(scenario->sensor.range_m);
     config->particles = (uint16_t)scenario->tracker.particles;
-}
-
-static void set_up_centroid(struct tracker_choice *choice, const struct scenario *scenario,
-                            const struct mh_region *region)
-{
-    (void)region;
-    mh_centroid_config_default(&choice->config.centroid);
-    choice->config.centroid.sensing_range_m = real_of(scenario->sensor.range_m);
-    if (scenario->sensor.quantity == QUANTITY_SOUND) {
-        choice->measures = QUANTITY_SOUND;
-        choice->config.centroid.strongest = 3; /* Han 2.1 */
-    }
 }
 
 /* As the target moves, and at its height: fixed clusters and their centre know all of that. */
@@ -172,29 +240,6 @@ static void set_up_cv(struct tracker_choice *choice, const struct scenario *scen
     }
 }
 
-void tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters)
-{
-    for (size_t i = 0; i < clusters->node_count; i++) {
-        const struct clustered_node *node = &clusters->nodes[i];
-        choice->noise[i] = (struct mh_cv_noise){node->id, real_of(node->range_variance_m2)};
-    }
-    choice->config.cv.noise = choice->noise;
-    choice->config.cv.noise_count = (uint16_t)clusters->node_count;
-}
-
-void centre_choose(const struct scenario *scenario, size_t count, struct centre_choice *choice)
-{
-    struct mh_fusion_centre_config *config = &choice->config;
-    choice->centre = scenario->fusion.rule == MH_FUSION_CENTRAL ? NULL : &mh_centre_fusion;
-    mh_fusion_centre_config_default(config);
-    config->rule = scenario->fusion.rule;
-    config->clusters = (uint8_t)count;
-    config->motion = motion_of(scenario);
-    config->keep = (mh_tick)lround(scenario->fusion.keep_s * MH_TICKS_PER_S);
-    config->start.n = MH_CV_STATES;
-    start_of(scenario, config->start.x, config->start.P);
-}
-
 static void set_up_gas(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
     const double towards_rad = scenario->wind.direction_rad + scenario->tracker.wind_off_rad;
@@ -221,101 +266,6 @@ static void set_up_gas(struct tracker_choice *choice, const struct scenario *sce
     if (region) {
         config->area = *region;
     }
-}
-
-/* C of source.loudness. */
-static mh_real loudness_of(const struct scenario *scenario)
-{
-    return real_of(scenario->source.loudness * scenario->sensor.range_m * scenario->sensor.range_m);
-}
-
-static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
-                            const struct mh_region *region)
-{
-    const bool joint = choice->tracker == &mh_tracker_acoustic; /* the others cannot */
-    const double least = 1e-3, slowest_mps = 0.1;               /* of a sensor without noise; what the tracker bears */
-    struct mh_acoustic_config *config = &choice->config.acoustic;
-    mh_acoustic_config_default(config, real_of(scenario->sensor.range_m));
-    config->sound.loudness_m2 = loudness_of(scenario);
-    config->sound.source_sd = real_of(scenario->sensor.source_noise);
-    config->sound.background_sd = real_of(fmax(scenario->sensor.background_noise, least));
-    config->variant = scenario->tracker.variant;
-    config->intervals = (uint8_t)scenario->tracker.intervals;
-    config->strongest = (uint8_t)(scenario->tracker.strongest > 0 ? scenario->tracker.strongest : UINT8_MAX);
-    config->separation = scenario->tracker.separation == MH_SEPARATION_JOINT && !joint ? MH_SEPARATION_DECOMPOSITION
-                                                                                       : scenario->tracker.separation;
-    if (scenario->tracker.share_range_m > 0) {
-        config->share_range_m = real_of(scenario->tracker.share_range_m);
-    }
-    config->filtered = scenario->tracker.filtered;
-    config->mirror_check = scenario->protocol.guards > 0;
-    config->speed_mps = real_of(fmax(target_of(scenario, region).speed_mps, slowest_mps));
-    mh_group_config_default(&config->group, scenario->tracker.groups);
-}
-
-static const struct {
-    const struct mh_tracker *tracker;
-    const char *meaning;
-    enum quantity measures;
-    void (*set_up)(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region);
-} trackers[] = {
-    {&mh_tracker_diffusion, "moving diffusion source: sliding window of its path, fitted with the exact model",
-     QUANTITY_CONCENTRATION, set_up_diffusion},
-    {&mh_tracker_luo, "moving diffusion source: least squares and Sage-Husa filter (Luo, Chai and Yang)",
-     QUANTITY_CONCENTRATION, set_up_luo},
-    {&mh_tracker_range, "ranged target: maximum likelihood of an instant, Kalman filter of constant velocity",
-     QUANTITY_RANGE, set_up_range},
-    {&mh_tracker_pftl, "ranged target: particles drawn anew about its predicted place (Zhou et al.)", QUANTITY_RANGE,
-     set_up_pftl},
-    {&mh_tracker_msl, "ranged target: particles that all who detect it can have (MSL, range-free)", QUANTITY_RANGE,
-     set_up_msl},
-    {&mh_tracker_centroid,
-     "ranged target: the middle of those who detect it (range-free); of sound the three who hear it best",
-     QUANTITY_RANGE, set_up_centroid},
-    {&mh_tracker_cv_ukf, "ranged target at nearly constant velocity: unscented Kalman filter, samples at any rate (Xu)",
-     QUANTITY_RANGE, set_up_cv},
-    {&mh_tracker_cv_ekf, "the same with an extended Kalman filter", QUANTITY_RANGE, set_up_cv},
-    {&mh_tracker_gas,
-     "gas leak in the wind: all samples of all heads, from a grid of places on which the rate is eliminated",
-     QUANTITY_GAS, set_up_gas},
-    {&mh_tracker_gas_small, "gas leak in the wind: iterated extended Kalman filter of place and logarithm of the rate",
-     QUANTITY_GAS, set_up_gas},
-    {&mh_tracker_gas_ekf, "gas leak in the wind: extended Kalman filter (Zhang et al.)", QUANTITY_GAS, set_up_gas},
-    {&mh_tracker_gas_ukf, "gas leak in the wind: unscented Kalman filter (Zhang et al.)", QUANTITY_GAS, set_up_gas},
-    {&mh_tracker_acoustic, "targets that are heard: median of triples and Gauss-Newton, several together, groups",
-     QUANTITY_SOUND, set_up_acoustic},
-    {&mh_tracker_dm, "targets that are heard: distances from a table, three circles (Han)", QUANTITY_SOUND,
-     set_up_acoustic},
-    {&mh_tracker_ml, "targets that are heard: maximum likelihood on a grid (Han)", QUANTITY_SOUND, set_up_acoustic},
-};
-
-enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
-
-bool tracker_describe(size_t i, const char **name, const char **meaning)
-{
-    if (i >= TRACKERS) {
-        return false;
-    }
-    *name = trackers[i].tracker->name;
-    *meaning = trackers[i].meaning;
-    return true;
-}
-
-int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
-                   char *error, size_t error_size)
-{
-    for (size_t i = 0; i < TRACKERS; i++) {
-        if (strcmp(scenario->tracker.name, trackers[i].tracker->name) == 0) {
-            *choice = (struct tracker_choice){.tracker = trackers[i].tracker, .measures = trackers[i].measures};
-            trackers[i].set_up(choice, scenario, region);
-            return 0;
-        }
-    }
-    snprintf(error, error_size,
-             "tracker.name: `%s`, expected diffusion, luo, range, pftl, msl, centroid, cv_ukf, cv_ekf, gas, gas_small, "
-             "gas_ekf, gas_ukf, acoustic, dm or ml",
-             scenario->tracker.name);
-    return -1;
 }
 
 /* Where the leak can be, as the recording says, or else the middles of the cells of a grid. Returns the sd of the leak about its place. */
@@ -347,27 +297,12 @@ static double set_places(struct mh_gas_wind_config *config, const struct recordi
     return fmax(place_sd_m, sqrt((width_m * width_m + height_m * height_m) / 24)); /* even over a cell */
 }
 
-int tracker_choose_of_recording(const struct scenario *scenario, const struct recording *recording, double interval_s,
-                                struct tracker_choice *choice, char *error, size_t error_size)
+static void set_up_gas_wind(struct tracker_choice *choice, const struct scenario *scenario,
+                            const struct recording *recording, double interval_s)
 {
-    const bool is_gas = strcmp(scenario->tracker.name, mh_tracker_gas_wind.name) == 0;
-    if (recording->candidate_count > 0 && !is_gas) {
-        snprintf(error, error_size, "tracker.name: `%s`, expected gas where there are candidates",
-                 scenario->tracker.name);
-        return -1;
-    }
-    if (recording->candidate_count > 0 && !recording->has_wind) {
-        snprintf(error, error_size,
-                 "the readings have no columns wind_speed_mps and wind_toward_rad, which candidates need");
-        return -1;
-    }
-    if (!is_gas || !recording->has_wind) {
-        return tracker_choose(scenario, NULL, choice, error, error_size);
-    }
     const double unit_ppm = scenario->sensor.unit_ppm, hours = interval_s / 3600;
     struct mh_gas_wind_config *config = &choice->config.gas_wind;
-    choice->tracker = &mh_tracker_gas_wind;
-    choice->measures = QUANTITY_GAS;
+    *choice = (struct tracker_choice){.tracker = &mh_tracker_gas_wind, .measures = QUANTITY_GAS, .wants_wind = true};
     mh_gas_wind_config_default(config);
     config->place_sd_m = real_of(fmin(set_places(config, recording, scenario->tracker.place_sd_m), 1000));
     config->unit = real_of(unit_ppm);
@@ -378,24 +313,169 @@ int tracker_choose_of_recording(const struct scenario *scenario, const struct re
     config->learn = ticks(scenario->tracker.learn_s);
     config->memory = ticks(scenario->tracker.memory_s);
     config->correlation = real_of(fmax(scenario->tracker.correlation_s / interval_s, 1));
-    return 0;
+}
+
+mh_tick tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters)
+{
+    for (size_t i = 0; i < clusters->node_count; i++) {
+        const struct clustered_node *node = &clusters->nodes[i];
+        choice->noise[i] = (struct mh_cv_noise){node->id, real_of(node->range_variance_m2)};
+    }
+    choice->config.cv.noise = choice->noise;
+    choice->config.cv.noise_count = (uint16_t)clusters->node_count;
+    return choice->config.cv.lag;
+}
+
+void centre_choose(const struct scenario *scenario, size_t count, struct centre_choice *choice)
+{
+    struct mh_fusion_centre_config *config = &choice->config;
+    choice->centre = scenario->fusion.rule == MH_FUSION_CENTRAL ? NULL : &mh_centre_fusion;
+    mh_fusion_centre_config_default(config);
+    config->rule = scenario->fusion.rule;
+    config->clusters = (uint8_t)count;
+    config->motion = motion_of(scenario);
+    config->keep = (mh_tick)lround(scenario->fusion.keep_s * MH_TICKS_PER_S);
+    config->start.n = MH_CV_STATES;
+    start_of(scenario, config->start.x, config->start.P);
+}
+#endif
+
+/* ---- all ---- */
+
+#if MOTEHOUND_HAS_CENTROID
+#define CENTROID &mh_tracker_centroid, set_up_centroid
+#else
+#define CENTROID NULL, NULL
+#endif
+#if MOTEHOUND_HAS_LUO
+#define LUO &mh_tracker_luo, set_up_luo
+#else
+#define LUO NULL, NULL
+#endif
+#if MOTEHOUND_HAS_PFTL
+#define PFTL &mh_tracker_pftl, set_up_pftl
+#else
+#define PFTL NULL, NULL
+#endif
+
+static const struct {
+    const char *name;
+    const struct mh_tracker *tracker; /* NULL: not in this build */
+    void (*set_up)(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region);
+    enum quantity measures;
+    const char *meaning;
+} trackers[] = {
+    {"diffusion", FLOAT_ONLY(mh_tracker_diffusion, set_up_diffusion), QUANTITY_CONCENTRATION,
+     "moving diffusion source: sliding window of its path, fitted with the exact model"},
+    {"luo", LUO, QUANTITY_CONCENTRATION,
+     "moving diffusion source: least squares and Sage-Husa filter (Luo, Chai and Yang)"},
+    {"range", FLOAT_ONLY(mh_tracker_range, set_up_range), QUANTITY_RANGE,
+     "ranged target: maximum likelihood of an instant, Kalman filter of constant velocity"},
+    {"pftl", PFTL, QUANTITY_RANGE, "ranged target: particles drawn anew about its predicted place (Zhou et al.)"},
+    {"msl", FLOAT_ONLY(mh_tracker_msl, set_up_msl), QUANTITY_RANGE,
+     "ranged target: particles that all who detect it can have (MSL, range-free)"},
+    {"centroid", CENTROID, QUANTITY_RANGE,
+     "ranged target: the middle of those who detect it (range-free); of sound the three who hear it best"},
+    {"cv_ukf", FLOAT_ONLY(mh_tracker_cv_ukf, set_up_cv), QUANTITY_RANGE,
+     "ranged target at nearly constant velocity: unscented Kalman filter, samples at any rate (Xu)"},
+    {"cv_ekf", FLOAT_ONLY(mh_tracker_cv_ekf, set_up_cv), QUANTITY_RANGE, "the same with an extended Kalman filter"},
+    {"gas", FLOAT_ONLY(mh_tracker_gas, set_up_gas), QUANTITY_GAS,
+     "gas leak in the wind: all samples of all heads, from a grid of places on which the rate is eliminated"},
+    {"gas_small", FLOAT_ONLY(mh_tracker_gas_small, set_up_gas), QUANTITY_GAS,
+     "gas leak in the wind: iterated extended Kalman filter of place and logarithm of the rate"},
+    {"gas_ekf", FLOAT_ONLY(mh_tracker_gas_ekf, set_up_gas), QUANTITY_GAS,
+     "gas leak in the wind: extended Kalman filter (Zhang et al.)"},
+    {"gas_ukf", FLOAT_ONLY(mh_tracker_gas_ukf, set_up_gas), QUANTITY_GAS,
+     "gas leak in the wind: unscented Kalman filter (Zhang et al.)"},
+    {"acoustic", FLOAT_ONLY(mh_tracker_acoustic, set_up_acoustic), QUANTITY_SOUND,
+     "targets that are heard: median of triples and Gauss-Newton, several together, groups"},
+    {"dm", FLOAT_ONLY(mh_tracker_dm, set_up_acoustic), QUANTITY_SOUND,
+     "targets that are heard: distances from a table, three circles (Han)"},
+    {"ml", FLOAT_ONLY(mh_tracker_ml, set_up_acoustic), QUANTITY_SOUND,
+     "targets that are heard: maximum likelihood on a grid (Han)"},
+};
+
+enum { TRACKERS = sizeof trackers / sizeof trackers[0] };
+
+bool tracker_describe(size_t i, const char **name, const char **meaning)
+{
+    for (size_t k = 0; k < TRACKERS; k++) {
+        if (trackers[k].tracker && i-- == 0) {
+            *name = trackers[k].name;
+            *meaning = trackers[k].meaning;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The trackers that there are -> text, "a, b or c". */
+static void list_trackers(char *text, size_t size)
+{
+    const char *name, *meaning, *after;
+    size_t length = 0;
+    text[0] = 0;
+    for (size_t i = 0; tracker_describe(i, &name, &meaning) && length < size; i++) {
+        const char *between = i == 0 ? "" : tracker_describe(i + 1, &after, &meaning) ? ", " : " or ";
+        length += (size_t)snprintf(text + length, size - length, "%s%s", between, name);
+    }
+}
+
+int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
+                   char *error, size_t error_size)
+{
+    char all[200];
+    bool is_one = false;
+    for (size_t i = 0; i < TRACKERS; i++) {
+        const bool is_it = strcmp(scenario->tracker.name, trackers[i].name) == 0;
+        is_one = is_one || is_it;
+        if (is_it && trackers[i].tracker) {
+            *choice = (struct tracker_choice){.tracker = trackers[i].tracker, .measures = trackers[i].measures};
+            trackers[i].set_up(choice, scenario, region);
+            return 0;
+        }
+    }
+    list_trackers(all, sizeof all);
+    snprintf(error, error_size, "tracker.name: `%s`%s, expected %s", scenario->tracker.name,
+             is_one ? " is not in this build (MH_REAL=fixed)" : "", all);
+    return -1;
+}
+
+int tracker_choose_of_recording(const struct scenario *scenario, const struct recording *recording, double interval_s,
+                                struct tracker_choice *choice, char *error, size_t error_size)
+{
+    const bool is_gas = strcmp(scenario->tracker.name, "gas") == 0;
+    if (recording->candidate_count > 0 && !is_gas) {
+        snprintf(error, error_size, "tracker.name: `%s`, expected gas where there are candidates",
+                 scenario->tracker.name);
+        return -1;
+    }
+    if (recording->candidate_count > 0 && !recording->has_wind) {
+        snprintf(error, error_size,
+                 "the readings have no columns wind_speed_mps and wind_toward_rad, which candidates need");
+        return -1;
+    }
+#if MH_REAL_FIXED
+    (void)interval_s;
+#else
+    if (is_gas && recording->has_wind) {
+        set_up_gas_wind(choice, scenario, recording, interval_s);
+        return 0;
+    }
+#endif
+    return tracker_choose(scenario, NULL, choice, error, error_size);
 }
 
 void tracker_seed(struct tracker_choice *choice, uint32_t seed)
 {
-    if (choice->tracker == &mh_tracker_pftl) {
-        choice->config.pftl.seed = seed;
-    } else if (choice->tracker == &mh_tracker_msl) {
-        choice->config.msl.seed = seed;
+    if (choice->seed) {
+        *choice->seed = seed;
     }
 }
 
 uint32_t tracker_draws(const struct tracker_choice *choice, const void *state)
 {
-    if (choice->tracker == &mh_tracker_pftl) {
-        return ((const struct mh_pftl *)state)->draws;
-    }
-    return choice->tracker == &mh_tracker_msl ? ((const struct mh_msl *)state)->draws : 0;
+    return choice->draws ? choice->draws(state) : 0;
 }
 
 struct mh_election_config election_config_of(const struct scenario *scenario)
@@ -447,6 +527,8 @@ static void set_up_cluster(struct protocol_choice *choice, const struct scenario
                                                     : half;
 }
 
+/* Protocols of trackers that need float. */
+#if !MH_REAL_FIXED
 static void set_up_fixed(struct protocol_choice *choice, const struct scenario *scenario)
 {
     struct mh_fixed_config *config = &choice->config.fixed;
@@ -464,6 +546,24 @@ static void set_up_fixed(struct protocol_choice *choice, const struct scenario *
     config->acknowledges = scenario->fusion.rule == MH_FUSION_HIF || scenario->fusion.rule == MH_FUSION_HIF_FEEDBACK;
     config->hello_period = ticks(scenario->protocol.hello_s);
 }
+
+static void set_up_token(struct protocol_choice *choice, const struct scenario *scenario)
+{
+    const struct mh_place nowhere = {0, 0, 0};
+    struct mh_token_config *config = &choice->config.token;
+    choice->protocol = &mh_protocol_token;
+    choice->in_turns = true;
+    mh_token_config_default(config, MH_BROADCAST - 1, &nowhere);
+    config->range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);
+    config->interval = ticks(scenario->sensor.interval_s);
+    const mh_tick half = config->interval / 2;
+    config->window = scenario->tracker.window_s > 0 ? ticks(scenario->tracker.window_s)
+                     : config->window < half        ? config->window
+                                                    : half;
+    config->calm = (uint8_t)scenario->protocol.calm;
+    config->heads_max = (uint8_t)scenario->protocol.heads_max;
+}
+#endif
 
 void protocol_tell_clusters(struct protocol_choice *choice, const struct clusters *clusters)
 {
@@ -483,23 +583,6 @@ void protocol_tell_clusters(struct protocol_choice *choice, const struct cluster
     }
     choice->config.fixed.clusters = choice->clusters;
     choice->config.fixed.cluster_count = (uint8_t)clusters->count;
-}
-
-static void set_up_token(struct protocol_choice *choice, const struct scenario *scenario)
-{
-    const struct mh_place nowhere = {0, 0, 0};
-    struct mh_token_config *config = &choice->config.token;
-    choice->protocol = &mh_protocol_token;
-    choice->in_turns = true;
-    mh_token_config_default(config, MH_BROADCAST - 1, &nowhere);
-    config->range_mm = (uint32_t)fmin(fmax(radio_nominal_range_m(scenario) * 1000, 1), 1e9);
-    config->interval = ticks(scenario->sensor.interval_s);
-    const mh_tick half = config->interval / 2;
-    config->window = scenario->tracker.window_s > 0 ? ticks(scenario->tracker.window_s)
-                     : config->window < half        ? config->window
-                                                    : half;
-    config->calm = (uint8_t)scenario->protocol.calm;
-    config->heads_max = (uint8_t)scenario->protocol.heads_max;
 }
 
 static void set_up_prince(struct protocol_choice *choice, const struct scenario *scenario)
@@ -525,7 +608,7 @@ int protocol_tell_entries(struct protocol_choice *choice, const struct scenario 
                           size_t error_size)
 {
     struct targets targets;
-    if (choice->protocol != &mh_protocol_prince || !scenario->protocol.entries) {
+    if (!protocol_is(choice->protocol, "prince") || !scenario->protocol.entries) {
         return 0;
     }
     if (targets_make(&targets, scenario, seed, error, error_size)) {
@@ -558,16 +641,8 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         set_up_cluster(choice, scenario);
         return 0;
     }
-    if (strcmp(name, mh_protocol_fixed.name) == 0) {
-        set_up_fixed(choice, scenario);
-        return 0;
-    }
     if (strcmp(name, mh_protocol_prince.name) == 0) {
         set_up_prince(choice, scenario);
-        return 0;
-    }
-    if (strcmp(name, mh_protocol_token.name) == 0) {
-        set_up_token(choice, scenario);
         return 0;
     }
     if (strcmp(name, chatter_protocol.name) == 0) {
@@ -575,7 +650,17 @@ int protocol_choose(const char *name, const struct scenario *scenario, struct pr
         choice->config.chatter.interval = (mh_tick)llround(scenario->sensor.interval_s * MH_TICKS_PER_S);
         return 0;
     }
-    snprintf(error, error_size,
-             "network.protocol: `%s`, expected collection, direct, cluster, prince, fixed, token or chatter", name);
+#if !MH_REAL_FIXED
+    if (strcmp(name, "fixed") == 0) {
+        set_up_fixed(choice, scenario);
+        return 0;
+    }
+    if (strcmp(name, "token") == 0) {
+        set_up_token(choice, scenario);
+        return 0;
+    }
+#endif
+    snprintf(error, error_size, "network.protocol: `%s`, expected collection, direct, cluster, prince, %s", name,
+             MH_REAL_FIXED ? "or chatter (MH_REAL=fixed)" : "fixed, token or chatter");
     return -1;
 }

@@ -6,50 +6,66 @@
 #include "motehound/centroid.h"
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
-#include "motehound/cv.h"
-#include "motehound/diffusion.h"
 #include "motehound/direct.h"
 #include "motehound/election.h"
 #include "motehound/fixed.h"
-#include "motehound/fusion_centre.h"
-#include "motehound/gas.h"
-#include "motehound/gas_wind.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/mote.h"
-#include "motehound/msl.h"
 #include "motehound/pftl.h"
 #include "motehound/prince.h"
-#include "motehound/range.h"
 #include "motehound/token.h"
 #include "scenario/recording.h"
 #include "scenario/scenario.h"
 #include "world/chatter.h"
 #include "world/clusters.h"
 
-/* Points into itself where nodes have noise of their own: not to be copied or moved. */
+#include <string.h>
+
+#if !MH_REAL_FIXED
+#include "motehound/cv.h"
+#include "motehound/diffusion.h"
+#include "motehound/fusion_centre.h"
+#include "motehound/gas.h"
+#include "motehound/gas_wind.h"
+#include "motehound/msl.h"
+#include "motehound/range.h"
+#endif
+
+/* Points into itself: not to be copied or moved. */
 struct tracker_choice {
     const struct mh_tracker *tracker;
     enum quantity measures;
     union {
         struct mh_luo_config luo;
+        struct mh_pftl_config pftl;
+        struct mh_centroid_config centroid;
+        struct mh_acoustic_config acoustic;
+#if !MH_REAL_FIXED
         struct mh_diffusion_config diffusion;
         struct mh_range_config range;
-        struct mh_pftl_config pftl;
         struct mh_msl_config msl;
-        struct mh_centroid_config centroid;
         struct mh_gas_config gas;
         struct mh_cv_config cv;
         struct mh_gas_wind_config gas_wind;
-        struct mh_acoustic_config acoustic;
-    } config;                                      /* the tracker's own */
+#endif
+    } config;                             /* the tracker's own */
+    uint32_t *seed;                       /* in it, of the random numbers; NULL: there are none */
+    uint32_t (*draws)(const void *state); /* of particles, since the state was begun; NULL: there are none */
+    bool wants_wind;                      /* readings of the wind are for it too */
+#if !MH_REAL_FIXED
     struct mh_cv_noise noise[CLUSTERED_NODES_MAX]; /* of fixed clusters' nodes */
+#endif
 };
 
 /* What joins the tracks of fixed clusters; no `centre` where one tracker has all samples. */
 struct centre_choice {
     const struct mh_centre *centre;
+#if !MH_REAL_FIXED
     struct mh_fusion_centre_config config;
+#else
+    char config; /* no centre is in this build */
+#endif
 };
 
 /* Points into itself where clusters are fixed or targets expected: not to be copied or moved. */
@@ -82,8 +98,8 @@ struct protocol_choice {
 int tracker_choose(const struct scenario *scenario, const struct mh_region *region, struct tracker_choice *choice,
                    char *error, size_t error_size);
 
-/* Let the tracker cv_ukf or cv_ekf know the noise of fixed clusters' nodes. */
-void tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters);
+/* Let the tracker cv_ukf or cv_ekf know the noise of fixed clusters' nodes. Returns how late samples may come to it. */
+mh_tick tracker_tell_clusters(struct tracker_choice *choice, const struct clusters *clusters);
 
 /* The fusion centre that scenario->fusion names, of `count` clusters. */
 void centre_choose(const struct scenario *scenario, size_t count, struct centre_choice *choice);
@@ -112,6 +128,11 @@ void protocol_tell_clusters(struct protocol_choice *choice, const struct cluster
 /* Let the protocol `prince` know where and when targets begin in the run with `seed`, if scenario->protocol says so. Returns as tracker_choose. */
 int protocol_tell_entries(struct protocol_choice *choice, const struct scenario *scenario, uint64_t seed, char *error,
                           size_t error_size);
+
+static inline bool protocol_is(const struct mh_protocol *protocol, const char *name)
+{
+    return strcmp(protocol->name, name) == 0;
+}
 
 /* The protocol called `name`; `fixed` is still to be told its clusters, `prince` its entries. Returns as tracker_choose. */
 int protocol_choose(const char *name, const struct scenario *scenario, struct protocol_choice *choice, char *error,

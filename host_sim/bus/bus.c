@@ -1,5 +1,6 @@
 #include "bus/bus.h"
 
+#include "reals.h"
 #include "scenario/text.h"
 #include "totals.h"
 
@@ -176,25 +177,25 @@ static void on_frame(void *context, double time_s, mh_node_id sender, mh_node_id
 /* What the tracker says of its own uncertainty, and of the source's release. */
 static void put_states(motehound_track_t *message, const struct mh_estimate *estimate)
 {
-    message->cov_xx_m2 = (double)estimate->covariance.xx;
-    message->cov_xy_m2 = (double)estimate->covariance.xy;
-    message->cov_yy_m2 = (double)estimate->covariance.yy;
-    message->cov_13 = (double)estimate->covariance_more[0];
-    message->cov_23 = (double)estimate->covariance_more[1];
-    message->cov_33 = (double)estimate->covariance_more[2];
-    message->cov_14 = (double)estimate->covariance_more[3];
-    message->cov_24 = (double)estimate->covariance_more[4];
-    message->cov_34 = (double)estimate->covariance_more[5];
-    message->cov_44 = (double)estimate->covariance_more[6];
+    message->cov_xx_m2 = number_of(estimate->covariance.xx);
+    message->cov_xy_m2 = number_of(estimate->covariance.xy);
+    message->cov_yy_m2 = number_of(estimate->covariance.yy);
+    message->cov_13 = number_of(estimate->covariance_more[0]);
+    message->cov_23 = number_of(estimate->covariance_more[1]);
+    message->cov_33 = number_of(estimate->covariance_more[2]);
+    message->cov_14 = number_of(estimate->covariance_more[3]);
+    message->cov_24 = number_of(estimate->covariance_more[4]);
+    message->cov_34 = number_of(estimate->covariance_more[5]);
+    message->cov_44 = number_of(estimate->covariance_more[6]);
     message->states = estimate->states;
-    message->rate = (double)estimate->rate;
+    message->rate = number_of(estimate->rate);
 }
 
 static void put_group(motehound_track_t *message, const struct mh_estimate *estimate)
 {
     message->mode = estimate->mode;
     message->members = estimate->members;
-    message->extent_m = (double)estimate->extent;
+    message->extent_m = number_of(estimate->extent);
     for (size_t i = 0; i < MH_GROUP_MAX && i < sizeof message->of / sizeof message->of[0]; i++) {
         message->of[i] = (int32_t)estimate->of[i];
     }
@@ -219,12 +220,12 @@ static motehound_track_t track_of(const struct bus *bus, mh_node_id head, const 
         .run = bus->run,
         .target = (int32_t)estimate->target,
         .number = at_time->present ? (int32_t)at_time->target : -1,
-        .x_m = origin_x + (double)estimate->position.x,
-        .y_m = origin_y + (double)estimate->position.y,
-        .vx_mps = (double)estimate->velocity.x,
-        .vy_mps = (double)estimate->velocity.y,
-        .raw_x_m = origin_x + (double)estimate->raw.x,
-        .raw_y_m = origin_y + (double)estimate->raw.y,
+        .x_m = origin_x + number_of(estimate->position.x),
+        .y_m = origin_y + number_of(estimate->position.y),
+        .vx_mps = number_of(estimate->velocity.x),
+        .vy_mps = number_of(estimate->velocity.y),
+        .raw_x_m = origin_x + number_of(estimate->raw.x),
+        .raw_y_m = origin_y + number_of(estimate->raw.y),
         .arrival_s = at_arrival->time_s,
         .measurements = estimate->measurements,
         .flags = estimate->flags,
@@ -261,8 +262,8 @@ static void on_local(void *context, double time_s, uint8_t cluster, mh_node_id h
 static void on_sink(void *context, double time_s, const struct mh_estimate *estimate, const struct truth *at_time)
 {
     struct bus *bus = context;
-    const double x_m = estimate->origin.x_mm * 1e-3 + (double)estimate->position.x;
-    const double y_m = estimate->origin.y_mm * 1e-3 + (double)estimate->position.y;
+    const double x_m = estimate->origin.x_mm * 1e-3 + number_of(estimate->position.x);
+    const double y_m = estimate->origin.y_mm * 1e-3 + number_of(estimate->position.y);
     motehound_track_t message = {
         .time_s = at_time->time_s,
         .run = bus->run,
@@ -270,8 +271,8 @@ static void on_sink(void *context, double time_s, const struct mh_estimate *esti
         .number = at_time->present ? (int32_t)at_time->target : -1,
         .x_m = x_m,
         .y_m = y_m,
-        .vx_mps = (double)estimate->velocity.x,
-        .vy_mps = (double)estimate->velocity.y,
+        .vx_mps = number_of(estimate->velocity.x),
+        .vy_mps = number_of(estimate->velocity.y),
         .raw_x_m = x_m,
         .raw_y_m = y_m,
         .arrival_s = at_time->time_s,

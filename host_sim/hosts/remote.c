@@ -3,6 +3,7 @@
 #include "engine/arena.h"
 #include "motehound/token.h"
 #include "scenario/text.h"
+#include "trackers.h"
 
 #include <string.h>
 
@@ -127,7 +128,7 @@ static int assign_some(struct remote *remote, bool *more, char *error, size_t er
 static int assign(struct remote *remote, char *error, size_t error_size)
 {
     const struct mh_token_config *token = remote->sink.protocol_config, none = {.start = 0};
-    const struct mh_token_config *search = remote->sink.protocol == &mh_protocol_token ? token : &none;
+    const struct mh_token_config *search = protocol_is(remote->sink.protocol, "token") ? token : &none;
     for (unsigned w = 0; w < remote->workers; w++) {
         motehound_worker_assign_t message = {.scenario = (char *)remote->scenario,
                                              .seed = (int64_t)remote->seed,

@@ -180,25 +180,25 @@ static motehound_worker_estimate_t estimate_message(const struct mh_estimate *es
     motehound_worker_estimate_t message = {
         .origin_mm = {estimate->origin.x_mm, estimate->origin.y_mm, estimate->origin.z_mm},
         .time_ticks = estimate->time,
-        .position_m = {(double)estimate->position.x, (double)estimate->position.y},
-        .velocity_mps = {(double)estimate->velocity.x, (double)estimate->velocity.y},
-        .covariance_m2 = {(double)estimate->covariance.xx, (double)estimate->covariance.xy,
-                          (double)estimate->covariance.yy},
-        .raw_m = {(double)estimate->raw.x, (double)estimate->raw.y},
-        .stored_m = {(double)estimate->stored.x, (double)estimate->stored.y},
-        .stored_velocity_mps = {(double)estimate->stored_velocity.x, (double)estimate->stored_velocity.y},
-        .age_s = (double)estimate->age,
+        .position_m = {number_of(estimate->position.x), number_of(estimate->position.y)},
+        .velocity_mps = {number_of(estimate->velocity.x), number_of(estimate->velocity.y)},
+        .covariance_m2 = {number_of(estimate->covariance.xx), number_of(estimate->covariance.xy),
+                          number_of(estimate->covariance.yy)},
+        .raw_m = {number_of(estimate->raw.x), number_of(estimate->raw.y)},
+        .stored_m = {number_of(estimate->stored.x), number_of(estimate->stored.y)},
+        .stored_velocity_mps = {number_of(estimate->stored_velocity.x), number_of(estimate->stored_velocity.y)},
+        .age_s = number_of(estimate->age),
         .measurements = estimate->measurements,
         .target = estimate->target,
         .near = estimate->near,
-        .extent_m = (double)estimate->extent,
-        .rate = (double)estimate->rate,
+        .extent_m = number_of(estimate->extent),
+        .rate = number_of(estimate->rate),
         .members = estimate->members,
         .mode = estimate->mode,
         .states = estimate->states,
         .flags = estimate->flags};
     for (size_t i = 0; i < COVARIANCE_MORE; i++) {
-        message.covariance_more[i] = (double)estimate->covariance_more[i];
+        message.covariance_more[i] = number_of(estimate->covariance_more[i]);
     }
     for (size_t i = 0; i < MH_GROUP_MAX; i++) {
         message.of[i] = estimate->of[i];

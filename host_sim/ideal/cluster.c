@@ -100,11 +100,10 @@ static void take_answers(struct run *run)
     for (size_t i = 0; i < run->asked_count; i++) {
         const uint32_t node = run->asked[i];
         if (run->detects[node]) {
-            run->answers[run->answer_count++] =
-                (struct mh_measurement){.node = run->vicinity.id[node],
-                                        .place = run->vicinity.place[node],
-                                        .time = instant_of(run),
-                                        .value = q20_of(run->range_m[node])};
+            run->answers[run->answer_count++] = (struct mh_measurement){.node = run->vicinity.id[node],
+                                                                        .place = run->vicinity.place[node],
+                                                                        .time = instant_of(run),
+                                                                        .value = q20_of(run->range_m[node])};
         }
     }
     qsort(run->answers, run->answer_count, sizeof *run->answers, by_node);
@@ -131,7 +130,7 @@ static void charge_request(struct run *run, uint32_t head, size_t first)
 static void ask_beyond(struct run *run, uint32_t head)
 {
     const struct mh_place *centre = &run->vicinity.place[head];
-    const uint32_t range_mm = (uint32_t)((double)run->election.radio_range_m * 1e3);
+    const uint32_t range_mm = (uint32_t)(number_of(run->election.radio_range_m) * 1e3);
     for (uint32_t node = 0; node < run->deployment.count; node++) {
         if (run->detects[node] && !mh_place_within(&run->vicinity.place[node], centre, range_mm)) {
             ledger_unicast(&run->ledger, ENERGY_MEASURING, head, node, REQUEST_BYTES);
@@ -233,7 +232,7 @@ static size_t around(struct run *run, uint32_t head)
 static void charge_hand_over(struct run *run, uint32_t before, uint32_t after, unsigned list)
 {
     const struct mh_place *from = &run->vicinity.place[before], *to = &run->vicinity.place[after];
-    const double hops = ceil(mh_place_distance_mm(from, to) * 1e-3 / (double)run->election.radio_range_m);
+    const double hops = ceil(mh_place_distance_mm(from, to) * 1e-3 / number_of(run->election.radio_range_m));
     const unsigned particles = run->sizes->particle * (unsigned)run->scenario->tracker.particles;
     for (unsigned hop = 0; hop < (unsigned)hops; hop++) {
         ledger_unicast(&run->ledger, ENERGY_CLUSTERING, before, after, run->sizes->hand_over + particles + list);
@@ -430,7 +429,7 @@ static int make_world(struct run *run, uint64_t seed, char *error, size_t error_
     run->answers = calloc(nodes, sizeof *run->answers);
     run->candidates = calloc(nodes, sizeof *run->candidates);
     if (!run->state || !run->detects || !run->range_m || !run->asked || !run->answers || !run->candidates ||
-        vicinity_of(&run->vicinity, scenario, &run->deployment, (double)run->election.radio_range_m) ||
+        vicinity_of(&run->vicinity, scenario, &run->deployment, number_of(run->election.radio_range_m)) ||
         ledger_make(&run->ledger, scenario, run->vicinity.count)) {
         return -1;
     }

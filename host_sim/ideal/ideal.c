@@ -12,10 +12,14 @@ static const struct {
     const char *protocol;
     int (*run)(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
                const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size);
-} modes[] = {{"cluster", ideal_cluster_run},
-             {"fixed", ideal_fixed_run},
-             {"prince", ideal_prince_run},
-             {"token", ideal_token_run}};
+} modes[] = {
+    {"cluster", ideal_cluster_run},
+    {"fixed", ideal_fixed_run},
+#if !MH_REAL_FIXED /* knows the tracker `acoustic` itself */
+    {"prince", ideal_prince_run},
+#endif
+    {"token", ideal_token_run},
+};
 
 int ideal_run(const struct scenario *scenario, uint64_t seed, const struct observer *observer,
               const volatile sig_atomic_t *stop, struct simulation_counters *counters, char *error, size_t error_size)
@@ -25,6 +29,7 @@ int ideal_run(const struct scenario *scenario, uint64_t seed, const struct obser
             return modes[i].run(scenario, seed, observer, stop, counters, error, error_size);
         }
     }
-    snprintf(error, error_size, "network.ideal: no such thing for network.protocol %s", scenario->network.protocol);
+    snprintf(error, error_size, "network.ideal: no such thing %sfor network.protocol %s",
+             MH_REAL_FIXED ? "in this build (MH_REAL=fixed) " : "", scenario->network.protocol);
     return -1;
 }

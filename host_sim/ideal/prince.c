@@ -83,10 +83,8 @@ static void hear(struct run *run)
         const struct point at = {node->x_m, node->y_m};
         const double y = sound_reading(&run->sound, &run->targets, run->time_s, (uint32_t)i, at);
         if (y >= 1) {
-            run->heard[run->heard_count++] = (struct mh_measurement){.node = node->id,
-                                                                     .place = place_from_metres(at.x_m, at.y_m, 0),
-                                                                     .time = now(run),
-                                                                     .value = q20_of(y)};
+            run->heard[run->heard_count++] = (struct mh_measurement){
+                .node = node->id, .place = place_from_metres(at.x_m, at.y_m, 0), .time = now(run), .value = q20_of(y)};
         }
     }
     run->measurements += run->heard_count;

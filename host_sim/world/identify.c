@@ -1,4 +1,5 @@
 #include "world/identify.h"
+#include "reals.h"
 
 #include <math.h>
 
@@ -54,8 +55,8 @@ uint32_t identify_target(struct identify *identify, const struct targets *target
 
 struct point identify_place(const struct mh_estimate *estimate)
 {
-    return (struct point){estimate->origin.x_mm / 1e3 + (double)estimate->position.x,
-                          estimate->origin.y_mm / 1e3 + (double)estimate->position.y};
+    return (struct point){estimate->origin.x_mm / 1e3 + number_of(estimate->position.x),
+                          estimate->origin.y_mm / 1e3 + number_of(estimate->position.y)};
 }
 
 struct identified identify_estimate(struct identify *identify, const struct targets *targets,

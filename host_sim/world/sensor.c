@@ -1,5 +1,5 @@
-#include "reals.h"
 #include "world/sensor.h"
+#include "reals.h"
 
 #include <math.h>
 #include <stdlib.h>

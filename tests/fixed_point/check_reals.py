@@ -66,9 +66,11 @@ class Reader:
         for key, value in list(node.items()):
             if key == "loc" or key == "range":
                 if key == "range":
-                    self.place.read(value.get("begin", {}))
+                    begin = value.get("begin", {})
+                    self.place.read(begin.get("spellingLoc", begin)) # of a macro: where it is defined
+                    node["_spelled"] = self.place.file
+                    self.place.read(begin.get("expansionLoc", {}))
                     node["_file"], node["_line"] = self.place.file, self.place.line
-                    node["_spelled"] = value.get("begin", {}).get("spellingLoc", {}).get("file", "")
                     self.place.read(value.get("end", {}))
                 else:
                     self.place.read(value)

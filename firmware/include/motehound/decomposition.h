@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 /* The least that mh_sound_residual leaves, as a share of the energy. */
-#define MH_RESIDUAL_LEAST 0.05f
+#define MH_RESIDUAL_LEAST MH_REAL(0.05f)
 
 /* k = (1 / d_own^2) / sum_j 1 / d_j^2 over sources[own] and all others that are within `range_m` of `node`; in (0, 1]. Sources of one loudness; distances d are at
  * least 1 m. Eq. (3-6) as published has range_m = R; but what is heard of a target outside R is still 7 to 16 % of the energy: 3 R is recommended. One division a source. */

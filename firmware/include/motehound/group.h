@@ -91,7 +91,7 @@ void mh_group_single(struct mh_group *group, uint32_t target);
 enum mh_status mh_group_found(struct mh_group *group, uint32_t target, const struct mh_vec2 *places, uint8_t count,
                               struct mh_vec2 *centroid);
 
-static inline mh_real mh_group_extent(const struct mh_group *group) { return (mh_real)group->extent * 0.01f; }
+static inline mh_real mh_group_extent(const struct mh_group *group) { return mh_real_from_ratio(group->extent, 100); }
 
 /* Where member i is, the centroid being at `centroid`. */
 struct mh_vec2 mh_group_place(const struct mh_group *group, struct mh_vec2 centroid, uint8_t i);

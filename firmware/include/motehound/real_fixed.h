@@ -19,8 +19,8 @@ typedef int32_t mh_real;
 #define MH_REAL(constant) ((mh_real)((constant)*65536.0f + ((constant) < 0 ? -0.5f : 0.5f)))
 #define MH_REAL_UPTO(constant) MH_REAL((constant) < 32767.0f ? (constant) : 32767.0f)
 #define MH_REAL_MIN ((mh_real)1)
-#define MH_REAL_INFINITE INT32_MAX
-#define MH_REAL_MAX (INT32_MAX - 1)
+#define MH_REAL_INFINITE ((mh_real)INT32_MAX)
+#define MH_REAL_MAX (MH_REAL_INFINITE - 1)
 
 static inline mh_real mh_abs(mh_real a) { return a < 0 ? -a : a; }
 
@@ -71,6 +71,7 @@ mh_real mh_atan2(mh_real y, mh_real x);
 
 /* The real of these bits, bits / 65536. */
 static inline mh_real mh_real_from_bits(int32_t bits) { return bits; }
+static inline int32_t mh_real_to_bits(mh_real a) { return a; }
 
 /* Integers as reals: a, and a / b for b > 0. */
 mh_real mh_real_from_int(int32_t a);

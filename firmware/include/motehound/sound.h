@@ -12,7 +12,7 @@
 
 #include "motehound/geometry.h"
 
-#define MH_SOUND_NEAR_M 1.0f
+#define MH_SOUND_NEAR_M MH_REAL(1.0f)
 
 struct mh_sound {
     mh_real loudness_m2;   /* C, 1 to 1e8: the square of the sensing range */
@@ -26,19 +26,19 @@ bool mh_sound_valid(const struct mh_sound *sound);
 /* e at the square of a distance, m2. One division. */
 static inline mh_real mh_sound_energy(const struct mh_sound *sound, mh_real square_m2)
 {
-    return sound->loudness_m2 / mh_max(square_m2, MH_SOUND_NEAR_M * MH_SOUND_NEAR_M);
+    return mh_div(sound->loudness_m2, mh_max(square_m2, mh_squared(MH_SOUND_NEAR_M)));
 }
 
 /* Variance of y where the energy is e > 0. */
 static inline mh_real mh_sound_variance(const struct mh_sound *sound, mh_real energy)
 {
-    return mh_squared(sound->source_sd * energy) + mh_squared(sound->background_sd);
+    return mh_squared(mh_mul(sound->source_sd, energy)) + mh_squared(sound->background_sd);
 }
 
 /* Variance of ln y there, to first order. One division. */
 static inline mh_real mh_sound_log_variance(const struct mh_sound *sound, mh_real energy)
 {
-    return mh_squared(sound->source_sd) + mh_squared(sound->background_sd / energy);
+    return mh_squared(sound->source_sd) + mh_squared(mh_div(sound->background_sd, energy));
 }
 
 /* The probability that a sensor detects the target (Han, Eq. (2-12)): 1 up to R - r, 0 beyond R + r, in between

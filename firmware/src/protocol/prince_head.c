@@ -361,7 +361,7 @@ void mh_prince_hear_fail(struct mh_prince *p, const mh_fail_t *fail)
     }
     const struct mh_place place = {fail->x_mm, fail->y_mm, 0};
     if (!mh_prince_find(p, (uint32_t)fail->target) && mh_prince_is_known(p, &place)) {
-        mh_prince_recognise(p, &place, mh_q20_from_real(1));
+        mh_prince_recognise(p, &place, MH_Q20_ONE);
         return;
     }
     struct mh_prince_row *row = fail->generation == 0 ? mh_prince_find_new(p) : NULL;

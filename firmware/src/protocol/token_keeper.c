@@ -4,7 +4,12 @@
 #include "motehound/geographic.h"
 
 #define OVERHEAD 2 /* bytes carried before the track: heads so far, calm ones in succession */
-#define LATE 2     /* instants: a part that is older is none of this token */
+#if MH_REAL_FIXED
+#define METRE 1000 /* mm: distances in m, so that they fit */
+#else
+#define METRE 1
+#endif
+#define LATE 2 /* instants: a part that is older is none of this token */
 
 /* ---- whom to ---- */
 
@@ -17,7 +22,7 @@ static mh_real score(const struct mh_token_node *t, const struct mh_neighbour *n
     count = count > 0 ? count : 1;
     return t->node->port->score(t->node->context, n->id, places, count, &found) == MH_OK && mh_finite(found)
                ? found
-               : -(mh_real)mh_place_distance_mm(&places[0], estimated);
+               : -mh_real_from_ratio((int32_t)mh_place_distance_mm(&places[0], estimated), METRE);
 }
 
 static const struct mh_neighbour *best(const struct mh_token_node *t)
