@@ -130,8 +130,8 @@ class Reader:
                 self.say(node, "a floating-point number becomes mh_real")
         elif kind == "CStyleCastExpr" and node.get("castKind") != "ToVoid":
             wanted = bare(node["type"]["qualType"])
-            if wanted == "mh_real":
-                self.taken(inner[0], wanted, "cast")
+            if wanted == "mh_real" and self.real(inner[0]) is False:
+                self.say(node, "an integer as mh_real (cast)")
             elif self.real(inner[0]) and wanted not in WIDE:
                 self.say(node, "mh_real cast to %s" % node["type"]["qualType"])
         elif kind == "VarDecl" and "init" in node and inner:
