@@ -26,7 +26,7 @@ static inline uint32_t mh_random_word(struct mh_random *random)
 /* Begin; any seed will do. */
 static inline void mh_random_init(struct mh_random *random, uint32_t seed)
 {
-    const struct mh_random begun = {.b = seed, .counter = 1};
+    const struct mh_random begun = {0, seed, 0, 1};
     *random = begun;
     for (uint8_t i = 0; i < 12; i++) {
         (void)mh_random_word(random);
