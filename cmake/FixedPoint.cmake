@@ -4,7 +4,9 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   base/real_fixed
   estimate/decomposition
   estimate/followed
+  estimate/least_squares
   estimate/node_class
+  estimate/sage_husa
   estimate/sensor
   model/time_window
   mote/head
@@ -42,12 +44,14 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_geographic
   test_geographic_collection
   test_head
+  test_least_squares
   test_link
   test_mote
   test_neighbours
   test_parcel
   test_real_fixed
   test_rendezvous
+  test_sage_husa
   test_sensor
   test_vicinity
   test_wire
