@@ -6,8 +6,10 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   estimate/followed
   estimate/least_squares
   estimate/node_class
+  estimate/puff_fit
   estimate/sage_husa
   estimate/sensor
+  model/puff
   model/time_window
   mote/head
   mote/mote
@@ -35,6 +37,7 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   protocol/rendezvous
   protocol/shunned
   protocol/vicinity
+  track/luo
   wire/wire
   wire/wire_types
 )
@@ -46,9 +49,11 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_head
   test_least_squares
   test_link
+  test_luo
   test_mote
   test_neighbours
   test_parcel
+  test_puff_fit
   test_real_fixed
   test_rendezvous
   test_sage_husa

@@ -9,11 +9,12 @@
  *
  * Cost: one row of n unknowns takes n square roots, n divisions and about 2 n (n + 3) multiplications; a solution n divisions.
  *
- * Scaling and overflow, in fixed point. Rows come in and unknowns go out as mh_real (Q15.16). The factor, the right sides and the residual share one scale:
- * they begin with 24 fractional bits (MH_LEAST_SQUARES_GUARD_BITS beyond those of a row) and all give up one whenever one of them passes 2^29, so they have at least 28 significant bits of
- * the largest number so far, whatever the number of rows (65,535 rows of 32,767 still have 6 fractional bits). A rotation keeps the length of a column, which is
- * below sqrt(6) 2^29: nothing wraps. Sine and cosine of a rotation have 30 fractional bits and come from the inverse root of the sum of
- * squares, without a division. Every product sum is rounded once, to nearest. An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. */
+ * Scaling and overflow, in fixed point. Rows come in and unknowns go out as mh_real (Q15.16). The factor, the right sides and the residual
+ * share one scale: they begin with 24 fractional bits, MH_LEAST_SQUARES_GUARD_BITS beyond those of a row, and all give up one whenever one
+ * of them passes 2^29, so that the largest keeps 28 significant bits whatever the number of rows; 65,535 rows of 32,767 still have 6
+ * fractional bits. A turn keeps the length of a column, which is below sqrt(6) 2^29: nothing wraps. Sine and cosine of a turn have 30 fractional
+ * bits and come without a division from the inverse root of the sum of squares. Every sum of products is rounded once, to nearest.
+ * An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. */
 #ifndef MOTEHOUND_LEAST_SQUARES_H
 #define MOTEHOUND_LEAST_SQUARES_H
 
@@ -22,8 +23,8 @@
 
 #define MH_LEAST_SQUARES_UNKNOWNS 4
 
-/* MH_LEAST_SQUARES_RANK: a column whose part independent of the columns before it is a smaller share than this is taken as dependent.
- * MH_LEAST_SQUARES_ENTRY_MAX: entries of A and b are at most this in size, so that no sum overflows. */
+/* A column whose part independent of the columns before it is a smaller share than MH_LEAST_SQUARES_RANK is taken as dependent. Entries of A
+ * and b are at most MH_LEAST_SQUARES_ENTRY_MAX in size, so that no sum overflows. */
 #if MH_REAL_FIXED
 #define MH_LEAST_SQUARES_RANK MH_REAL(1.22e-4f) /* 2^-13: the last place of metres is 1.5e-5 */
 #define MH_LEAST_SQUARES_ENTRY_MAX MH_REAL_MAX
@@ -38,9 +39,6 @@ struct mh_least_squares {
     uint16_t rows;                                                       /* taken so far, saturating */
     mh_real r[MH_LEAST_SQUARES_UNKNOWNS][MH_LEAST_SQUARES_UNKNOWNS + 1]; /* upper triangle R; column `unknowns`: d */
     mh_real residual;                                                    /* |A z - b| at the free minimiser */
-#if MH_REAL_FIXED
-    int8_t scale; /* r and residual are held 2^scale times as large */
-#endif
 #if MH_REAL_FIXED
     int8_t scale; /* r and residual are held 2^scale times as large */
 #endif

@@ -11,7 +11,14 @@
  * filtered position, `velocity` the last one known, `flags` STARTED, FILTERED, AGE_LOW and AGE_HIGH. `covariance` is all zero: the
  * filter's variance holds neither the error of the velocity nor the lag of the method, which is most of the error. `origin` is the
  * node with the largest concentration at the first position, for the whole track; mh_real resolves 1 mm 10 km from it.
- * predict() moves the position on with the velocity, from tau, Eq. (11). interest() does not exist: the method never asks. */
+ * predict() moves the position on with the velocity, from tau, Eq. (11). interest() does not exist: the method never asks.
+ *
+ * Scaling and overflow. A step whose numbers have no room gives MH_ERR_RANGE or MH_ERR_NOT_FINITE and leaves the state as it was, its time included. In
+ * float that takes a velocity beyond 3e38 m/s. In fixed point the room is: nodes at most 256 m from the one with the largest concentration (puff_fit.h),
+ * positions at most 8,000 m from `origin`, velocities below 32,767 m/s, sensor readings that are not saturated; a step of the filter
+ * that sage_husa.h refuses, such as a jump of more than 181 m, is left out as after any wild pre-estimate. Times since the last position count as 16,383 s at most.
+ * All numbers are mh_real (Q15.16: 0.015 mm, 0.015 ms) but weights, gains, the factor of the least squares and
+ * concentrations, which keep more. predict() gives MH_ERR_RANGE where the position has no room. `nonlinear` needs float. */
 #ifndef MOTEHOUND_LUO_H
 #define MOTEHOUND_LUO_H
 
@@ -19,15 +26,15 @@
 #include "motehound/tracker.h"
 
 struct mh_luo_config {
-    mh_real diffusion_m2ps;            /* D, 1e-6 to 1e3; nominal 1 */
+    mh_real diffusion_m2ps;            /* D, 1e-6 to 1e3 (fixed point: 0.01 to 500); nominal 1 */
     mh_real chi;                       /* selection threshold on concentration, g/m2, 0 to 2000; nominal 0.2 */
     mh_real forgetting;                /* b of the Sage-Husa weight, 0 < b < 1; nominal 0.97 */
     struct mh_sage_husa_config filter; /* start values and floors, m2; nominal: mh_sage_husa_config_default */
 
-    /* Solve Eq. (9), once from the answer of (10) and once from the reference node, and take the better one. Nominal false. */
+    /* Solve Eq. (9), once from the answer of (10) and once from the reference node, and take the better one. Nominal false; fixed point: always. */
     bool nonlinear;
 
-    /* End for good once the track has left `region` after having been inside it by at least `inside_mm`, 0 to 1e9, from every
+    /* End for good once the track has left `region` after having been inside it by at least `inside_mm`, 0 to 1e9 (fixed point: 1.6e7), from every
      * border. Nominal false; region 0 to 80 m (each coordinate within +- 1e9 mm), inside_mm 5000. */
     bool stop_outside;
     struct mh_region region;

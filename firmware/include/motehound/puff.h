@@ -1,4 +1,8 @@
-/* One puff: what a mass released at one place and time makes of the concentration later, in the plane (Luo, Eq. (4)). */
+/* One puff: what a mass released at one place and time makes of the concentration later, in the plane (Luo, Eq. (4)).
+ *
+ * Scaling and overflow, in fixed point. All numbers are mh_real (Q15.16), so a concentration of 1e-3 g/m2 has six bits. The squared distance is
+ * a sum of exact products: only its quotient by 4 D age is rounded, and where that passes 12 the exponential is 0. A concentration or a derivative too large for the format is
+ * infinite. Good for 4 D age up to 32,767 m2. */
 #ifndef MOTEHOUND_PUFF_H
 #define MOTEHOUND_PUFF_H
 

@@ -16,7 +16,12 @@
  *         for (k = 0; k < count; k++) mh_puff_nonlinear_add(&nonlinear, &samples[k]);
  *     } while (mh_puff_nonlinear_advance(&nonlinear, &answer) == MH_NONE);
  *
- * Positions are in metres relative to an origin within 2e6 m. Errors leave the fit as it was. */
+ * Positions are in metres relative to an origin within 2e6 m. Errors leave the fit as it was.
+ *
+ * Scaling and overflow, in fixed point. There is the linear fit only: slopes of concentrations and the sums of their squares span more than the format. Its
+ * equations are halved, so that their right side, half of a squared distance, reaches as far as 256 m from the reference node; a node
+ * farther off is refused as MH_ERR_RANGE. Concentrations come as the 20 fractional bits of the sensor (mh_concentration), whose logarithms
+ * are within 1.5e-5 of each other's difference; those of 0.01 g/m2 and less are coarser than that themselves. D is 0.01 to 500 m2/s, the mass at most 32,767 g and else infinite. */
 #ifndef MOTEHOUND_PUFF_FIT_H
 #define MOTEHOUND_PUFF_FIT_H
 
@@ -26,9 +31,18 @@
 /* Fewest concentrations that determine a puff's position, age and mass. */
 #define MH_PUFF_SAMPLES_MIN 4
 
+/* A concentration with all digits that a sensor node sends; mh_concentration_of makes one of its Q11.20. */
+#if MH_REAL_FIXED
+typedef mh_q20 mh_concentration;
+static inline mh_concentration mh_concentration_of(mh_q20 sample) { return sample; }
+#else
+typedef mh_real mh_concentration;
+static inline mh_concentration mh_concentration_of(mh_q20 sample) { return mh_q20_to_real(sample); }
+#endif
+
 struct mh_puff_sample {
-    struct mh_vec2 position; /* of the node */
-    mh_real concentration;   /* g/m2, > 0 */
+    struct mh_vec2 position;        /* of the node */
+    mh_concentration concentration; /* g/m2, > 0 */
 };
 
 struct mh_puff_answer {
@@ -44,19 +58,23 @@ struct mh_puff_linear {
 };
 
 /* Begin. `diffusion` in m2/s, > 0. `reference`: one of the samples, best the one with the largest concentration, whose
- * logarithm has the smallest relative error. Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (diffusion or concentration not positive). */
+ * logarithm has the smallest relative error. Errors: MH_ERR_NOT_FINITE (fixed point: a saturated number), MH_ERR_RANGE (diffusion or
+ * concentration not positive; fixed point: diffusion outside 0.01 to 500). */
 enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusion,
                                     const struct mh_puff_sample *reference);
 
 /* Take one sample, in any order; the reference is among them (its equation is 0 = 0, but it counts).
- * Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (concentration not positive). */
+ * Errors: MH_ERR_NOT_FINITE, MH_ERR_RANGE (concentration not positive; fixed point: more than 256 m from the reference). */
 enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_puff_sample *sample);
 
-/* The exact minimiser. The mass is the one that gives the reference its concentration (e^20 times its share at most, where the
+/* The exact minimiser. The mass is the one that gives the reference its concentration (e^20 times its share at most, in fixed point e^10, where the
  * position is far off for the age), 0 where the age is 0. Where the samples determine the position for a given age but not the
  * age, the age is age_max. Errors: MH_ERR_ARGUMENT (age_max < 0 or NaN),
- * MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN, the reference included), MH_ERR_SINGULAR (nodes on one line). */
+ * MH_ERR_TOO_FEW (fewer than MH_PUFF_SAMPLES_MIN, the reference included), MH_ERR_SINGULAR (nodes on one line),
+ * MH_ERR_RANGE (a position too large for mh_real). */
 enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real age_max, struct mh_puff_answer *answer);
+
+#if !MH_REAL_FIXED
 
 /* Least age of the nonlinear fit, as a share of age_max: at age 0 Eq. (4) has no value. */
 #define MH_PUFF_AGE_SHARE_MIN 1e-3f
@@ -85,5 +103,7 @@ enum mh_status mh_puff_nonlinear_add(struct mh_puff_nonlinear *fit, const struct
  * fit->cost hold the best puff found; its bound is low at MH_PUFF_AGE_SHARE_MIN age_max. Errors: MH_ERR_TOO_FEW (fewer than
  * MH_PUFF_SAMPLES_MIN), MH_ERR_SINGULAR (at the start the samples do not determine the puff). */
 enum mh_status mh_puff_nonlinear_advance(struct mh_puff_nonlinear *fit, struct mh_puff_answer *answer);
+
+#endif
 
 #endif

@@ -1,6 +1,19 @@
 #include "motehound/puff_fit.h"
 
+#if MH_REAL_FIXED
+#define EXPONENT_MAX MH_REAL(10.0f)
+#define DIFFUSION_MIN MH_REAL(0.01f)
+#define DIFFUSION_MAX MH_REAL(500.0f)
+static mh_real in_grams(mh_concentration concentration) { return mh_q20_to_real(concentration); }
+/* mh_log takes the 20 fractional bits for 16, which puts the same constant on both */
+static mh_real log_ratio(mh_concentration over, mh_concentration under) { return mh_log(over) - mh_log(under); }
+#else
 #define EXPONENT_MAX 20.0f
+#define DIFFUSION_MIN MH_REAL_MIN
+#define DIFFUSION_MAX MH_REAL_MAX
+static mh_real in_grams(mh_concentration concentration) { return concentration; }
+static mh_real log_ratio(mh_concentration over, mh_concentration under) { return mh_log(over / under); }
+#endif
 
 static enum mh_status check(const struct mh_puff_sample *sample)
 {
@@ -15,11 +28,11 @@ static enum mh_status check(const struct mh_puff_sample *sample)
 static mh_real mass_through(const struct mh_puff_sample *sample, mh_real diffusion, struct mh_vec2 position,
                             mh_real age)
 {
-    const mh_real spread = 4.0f * diffusion * age;
-    const mh_real dx = sample->position.x - position.x;
-    const mh_real dy = sample->position.y - position.y;
-    const mh_real exponent = spread > 0 ? (dx * dx + dy * dy) / spread : 0;
-    return sample->concentration * MH_PI * spread * mh_exp(mh_min(exponent, EXPONENT_MAX));
+    const mh_real spread = mh_mul(mh_mul(MH_REAL(4.0f), diffusion), age);
+    const mh_wide square = mh_vec2_square(mh_vec2_between(position, sample->position));
+    const mh_real exponent = spread > 0 ? mh_wide_div(square, spread) : 0;
+    return mh_mul(mh_mul(mh_mul(in_grams(sample->concentration), MH_PI), spread),
+                  mh_exp(mh_min(exponent, EXPONENT_MAX)));
 }
 
 enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusion,
@@ -32,7 +45,7 @@ enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusio
     if (!mh_finite(diffusion)) {
         return MH_ERR_NOT_FINITE;
     }
-    if (!(diffusion > 0)) {
+    if (!mh_within(diffusion, DIFFUSION_MIN, DIFFUSION_MAX)) {
         return MH_ERR_RANGE;
     }
     fit->diffusion = diffusion;
@@ -41,19 +54,19 @@ enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusio
     return MH_OK;
 }
 
-/* Eq. (A2) of the sample minus that of the reference; unknowns are the position (e, n) relative to the reference and the age
- * s = t - tau: 2 dx e + 2 dy n + 4 D ln(c_Q / c_k) s = dx^2 + dy^2. */
+/* Half of Eq. (A2) of the sample minus that of the reference; unknowns are the position (e, n) relative to the reference and the age
+ * s = t - tau: dx e + dy n + 2 D ln(c_Q / c_k) s = (dx^2 + dy^2) / 2. */
 enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_puff_sample *sample)
 {
     const enum mh_status status = check(sample);
     if (status != MH_OK) {
         return status;
     }
-    const mh_real dx = sample->position.x - fit->reference.position.x;
-    const mh_real dy = sample->position.y - fit->reference.position.y;
-    const mh_real logarithm = mh_log(fit->reference.concentration / sample->concentration);
-    const mh_real row[3] = {2.0f * dx, 2.0f * dy, 4.0f * fit->diffusion * logarithm};
-    return mh_least_squares_add(&fit->equations, row, dx * dx + dy * dy);
+    const struct mh_vec2 away = mh_vec2_between(fit->reference.position, sample->position);
+    const mh_real logarithm = log_ratio(fit->reference.concentration, sample->concentration);
+    const mh_real row[3] = {away.x, away.y, mh_mul(2 * fit->diffusion, logarithm)};
+    const mh_real right = mh_wide_to_real(mh_vec2_square(away) / 2);
+    return mh_finite(right) ? mh_least_squares_add(&fit->equations, row, right) : MH_ERR_RANGE;
 }
 
 enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real age_max, struct mh_puff_answer *answer)
@@ -67,12 +80,17 @@ enum mh_status mh_puff_linear_solve(const struct mh_puff_linear *fit, mh_real ag
     if (status != MH_OK) {
         return status;
     }
-    const struct mh_vec2 position = {fit->reference.position.x + z[0], fit->reference.position.y + z[1]};
+    const struct mh_vec2 position = {mh_add(fit->reference.position.x, z[0]), mh_add(fit->reference.position.y, z[1])};
+    if (!mh_finite(position.x) || !mh_finite(position.y)) {
+        return MH_ERR_RANGE;
+    }
     const mh_real mass = mass_through(&fit->reference, fit->diffusion, position, z[2]);
     const struct mh_puff_answer solved = {{position, z[2], mass}, bound};
     *answer = solved;
     return MH_OK;
 }
+
+#if !MH_REAL_FIXED
 
 #define PASSES_MAX 24
 #define DAMPING_BEGIN 1e-3f
@@ -198,3 +216,5 @@ enum mh_status mh_puff_nonlinear_advance(struct mh_puff_nonlinear *fit, struct m
                                                                 : MH_BOUND_NONE;
     return MH_OK;
 }
+
+#endif

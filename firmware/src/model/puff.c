@@ -5,7 +5,8 @@
 mh_real mh_puff_concentration(const struct mh_puff *puff, mh_real diffusion_m2ps, struct mh_vec2 point,
                               struct mh_puff_slope *slope)
 {
-    const mh_real spread = 4.0f * diffusion_m2ps * puff->age; /* squared length over which the puff has spread */
+    const mh_real spread =
+        mh_mul(mh_mul(MH_REAL(4.0f), diffusion_m2ps), puff->age); /* squared length over which the puff has spread */
     const struct mh_puff_slope none = {0, 0, 0, 0};
     if (slope != NULL) {
         *slope = none;
@@ -13,15 +14,17 @@ mh_real mh_puff_concentration(const struct mh_puff *puff, mh_real diffusion_m2ps
     if (!(spread > 0)) {
         return 0;
     }
-    const mh_real dx = point.x - puff->position.x;
-    const mh_real dy = point.y - puff->position.y;
-    const mh_real exponent = (dx * dx + dy * dy) / spread;
-    const mh_real c = puff->mass / (MH_PI * spread) * mh_exp(-exponent);
+    const struct mh_vec2 away = mh_vec2_between(puff->position, point);
+    const mh_real exponent = mh_wide_div(mh_vec2_square(away), spread);
+    const mh_real central = mh_div(puff->mass, mh_mul(MH_PI, spread));
+    const mh_real c = mh_finite(central) ? mh_mul(central, mh_exp(-exponent)) : central;
     if (slope != NULL && c != 0) {
-        slope->x = 2.0f * c * dx / spread;
-        slope->y = 2.0f * c * dy / spread;
+        const mh_real half_x = mh_wide_div(mh_wide_mul(c, away.x), spread);
+        const mh_real half_y = mh_wide_div(mh_wide_mul(c, away.y), spread);
+        slope->x = mh_add(half_x, half_x);
+        slope->y = mh_add(half_y, half_y);
         slope->log_mass = c;
-        slope->age = c * (exponent - 1.0f) / puff->age;
+        slope->age = mh_wide_div(mh_wide_mul(c, exponent - MH_REAL(1.0f)), puff->age);
     }
     return c;
 }

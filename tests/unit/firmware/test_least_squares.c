@@ -141,7 +141,7 @@ static void many_large_rows(void)
         take(&problem, 1, x, 2 + 0.5f * x);
     }
     TEST_ASSERT_EQUAL_INT(MH_OK, solve(&problem, -10, 10));
-    EXPECT_REAL(2e-3f, 2e-4f, 2, z[0]);
+    EXPECT_REAL(2e-3f, 0.1f, 2, z[0]); /* 2^-17 in the slope, at the mean x of 12,000 */
     EXPECT_REAL(1e-6f, 2e-5f, 0.5f, z[1]);
     TEST_ASSERT_EQUAL_UINT16(4000, problem.rows);
 }

@@ -103,10 +103,11 @@ static void what_has_no_room_is_refused(void)
 {
     struct mh_sage_husa filter = begin(2);
     TEST_ASSERT_EQUAL_INT(MH_OK, step(&filter, 5, 1, MH_SHARE(0.1f)));
+    filter.measurement_variance = MH_REAL(7990.0f);
     const struct mh_sage_husa kept = filter;
     TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, step(&filter, 500, 0, MH_SHARE(0.1f)));  /* 500^2 */
-    TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, step(&filter, -175, 0, MH_SHARE(0.5f))); /* R = 8,600 m2 */
-    TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, step(&filter, 7990, 7999, MH_SHARE(0)));
+    TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, step(&filter, -175, 0, MH_SHARE(0.1f))); /* R = 9,700 m2 */
+    TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, step(&filter, 7990, 7999, MH_SHARE(0.0f)));
     TEST_ASSERT_EQUAL_INT(MH_ERR_RANGE, step(&filter, -7999, 7999, MH_SHARE(0.03f)));
     TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, step(&filter, 40000, 0, MH_SHARE(0.1f)));
     TEST_ASSERT_EQUAL_MEMORY(&kept, &filter, sizeof kept);
