@@ -2,6 +2,7 @@
 set(MOTEHOUND_FIXED_POINT_SOURCES
   base/geometry
   base/real_fixed
+  base/share
   estimate/decomposition
   estimate/followed
   estimate/least_squares
@@ -58,6 +59,7 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_rendezvous
   test_sage_husa
   test_sensor
+  test_share
   test_vicinity
   test_wire
 )

@@ -58,7 +58,7 @@ class Reader:
 
     def say(self, node, what):
         # what mh_real is made of takes it for an integer
-        if not any(re.search(r"(^|/)real(_fixed)?\.[ch]$", file or "") for file in (node["_file"], node["_spelled"])):
+        if not any(re.search(r"(^|/)(real(_fixed)?|share)\.[ch]$", file or "") for file in (node["_file"], node["_spelled"])):
             self.found.add("%s:%d: %s" % (node["_file"], node["_line"], what))
 
     def mark(self, node):

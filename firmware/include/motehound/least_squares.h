@@ -12,8 +12,7 @@
  * Scaling and overflow, in fixed point. Rows come in and unknowns go out as mh_real (Q15.16). The factor, the right sides and the residual
  * share one scale: they begin with 24 fractional bits, MH_LEAST_SQUARES_GUARD_BITS beyond those of a row, and all give up one whenever one
  * of them passes 2^29, so that the largest keeps 28 significant bits whatever the number of rows; 65,535 rows of 32,767 still have 6
- * fractional bits. A turn keeps the length of a column, which is below sqrt(6) 2^29: nothing wraps. Sine and cosine of a turn have 30 fractional
- * bits and come without a division from the inverse root of the sum of squares. Every sum of products is rounded once, to nearest.
+ * fractional bits. A turn keeps the length of a column, which is below sqrt(6) 2^29: nothing wraps. Every sum of products is rounded once, to nearest.
  * An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. */
 #ifndef MOTEHOUND_LEAST_SQUARES_H
 #define MOTEHOUND_LEAST_SQUARES_H
@@ -27,7 +26,7 @@
  * and b are at most MH_LEAST_SQUARES_ENTRY_MAX in size, so that no sum overflows. */
 #if MH_REAL_FIXED
 #define MH_LEAST_SQUARES_RANK MH_REAL(1.22e-4f) /* 2^-13: the last place of metres is 1.5e-5 */
-#define MH_LEAST_SQUARES_ENTRY_MAX MH_REAL_MAX
+#define MH_LEAST_SQUARES_ENTRY_MAX MH_REAL(32767.0f)
 #define MH_LEAST_SQUARES_GUARD_BITS 8
 #else
 #define MH_LEAST_SQUARES_RANK 1e-5f

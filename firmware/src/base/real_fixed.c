@@ -1,4 +1,4 @@
-#include "motehound/real.h"
+#include "motehound/share.h"
 
 #if MH_REAL_FIXED
 
@@ -89,17 +89,34 @@ mh_real mh_mul(mh_real a, mh_real b)
 }
 #endif
 
-/* Products of numbers with 30 fractional bits. */
-static int32_t mul30(int32_t a, int32_t b)
+/* Products of numbers with 30 fractional bits. An AVR shifts bytes at once, bits in a loop. */
+static int32_t without_30_bits(int32_t high, uint32_t low)
 {
-    uint32_t low = (uint32_t)1 << 29;
-    const int32_t high = multiply(a, b, &low);
-    const uint8_t last = (uint8_t)(low >> 24) >> 6; /* an AVR shifts bytes at once, bits in a loop */
+    const uint8_t last = (uint8_t)(low >> 24) >> 6;
     uint32_t quarter = (uint32_t)high;
     quarter += quarter;
     quarter += quarter;
     return (int32_t)(quarter + last);
 }
+
+static int32_t mul30(int32_t a, int32_t b)
+{
+    uint32_t low = (uint32_t)1 << 29;
+    const int32_t high = multiply(a, b, &low);
+    return without_30_bits(high, low);
+}
+
+#if !MH_REAL_WIDE
+mh_real mh_part(mh_share share, mh_real a) { return mul30(share, a); }
+
+mh_real mh_turned(mh_share c, mh_real a, mh_share s, mh_real b)
+{
+    uint32_t low = (uint32_t)1 << 29;
+    int32_t high = multiply(c, a, &low);
+    high += multiply(s, b, &low);
+    return without_30_bits(high, low);
+}
+#endif
 
 #if MH_REAL_WIDE
 /* `steps` binary digits of over / under after the point, for over < under. */

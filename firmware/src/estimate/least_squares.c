@@ -1,44 +1,18 @@
 #include "motehound/least_squares.h"
 
 #if MH_REAL_FIXED
+#define LARGEST MH_REAL(8192.0f) /* 2^29 */
 
-#define LARGEST ((mh_real)1 << 29)
-
-static uint32_t high_word(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
-
-/* Cosine and sine of the turn that brings (a, b) onto the axis of a; false if both are 0. A factor common to both would only weigh the equation, so the inverse
- * root, by Newton's method, may end at 6e-8. */
-static bool turn(mh_real a, mh_real b, mh_share *c, mh_share *s)
+static void shrink(struct mh_least_squares *problem)
 {
-    uint32_t over_a = (uint32_t)mh_abs(a), over_b = (uint32_t)mh_abs(b);
-    if ((over_a | over_b) == 0) {
-        return false;
+    for (uint8_t i = 0; i < problem->unknowns; i++) {
+        for (uint8_t j = i; j <= problem->unknowns; j++) {
+            problem->r[i][j] /= 2;
+        }
     }
-    while (((over_a | over_b) & (uint32_t)1 << 30) == 0) {
-        over_a <<= 1;
-        over_b <<= 1;
-    }
-    uint32_t square = (uint32_t)(((uint64_t)over_a * over_a + (uint64_t)over_b * over_b) >> 32);
-    const uint8_t doubled = square < (uint32_t)1 << 29;
-    square <<= 2 * doubled;                                       /* 1/2 to 2, with 30 fractional bits */
-    uint32_t root = 3238615640u - high_word(square, 3701275022u); /* its inverse, within 9 %, with 31 */
-    for (uint8_t i = 0; i < 3; i++) {
-        root = high_word(root, ((uint32_t)3 << 28) - high_word(square, high_word(root, root))) << 3;
-    }
-    const mh_share cosine = (mh_share)(high_word(over_a, root) << doubled);
-    const mh_share sine = (mh_share)(high_word(over_b, root) << doubled);
-    *c = a < 0 ? -cosine : cosine;
-    *s = b < 0 ? -sine : sine;
-    return true;
+    problem->residual /= 2;
+    problem->scale--;
 }
-
-static mh_real length(mh_real a, mh_real b)
-{
-    mh_share c, s;
-    return turn(a, b, &c, &s) ? mh_turned(c, a, s, b) : 0;
-}
-
-static mh_real half(mh_real a) { return (a + 1) >> 1; }
 
 /* The row at the scale of the factor, with room in both for the turns. */
 static void bring_to_scale(struct mh_least_squares *problem, mh_real *row)
@@ -51,49 +25,28 @@ static void bring_to_scale(struct mh_least_squares *problem, mh_real *row)
             held = mh_max(held, mh_abs(problem->r[i][j]));
         }
     }
-    int8_t scale = problem->scale;
-    for (; held > LARGEST || (scale < 0 ? entry >> -scale : entry) > (scale < 0 ? LARGEST : LARGEST >> scale);
-         scale--) {
-        held = half(held);
-        problem->residual = half(problem->residual);
-        for (uint8_t i = 0; i < n; i++) {
-            for (uint8_t j = i; j <= n; j++) {
-                problem->r[i][j] = half(problem->r[i][j]);
-            }
+    for (; held > LARGEST; held /= 2) {
+        shrink(problem);
+    }
+    int8_t fits = 0; /* the scale at which the row has room */
+    for (; entry > LARGEST; entry /= 2) {
+        fits--;
+    }
+    for (; fits < problem->scale && entry <= LARGEST / 2; entry *= 2) {
+        fits++;
+    }
+    while (problem->scale > fits) {
+        shrink(problem);
+    }
+    for (uint8_t j = 0; j <= n; j++) {
+        for (int8_t k = 0; k < problem->scale; k++) {
+            row[j] *= 2;
+        }
+        for (int8_t k = 0; k > problem->scale; k--) {
+            row[j] /= 2;
         }
     }
-    problem->scale = scale;
-    for (uint8_t j = 0; j <= n; j++) {
-        row[j] = scale < 0 ? row[j] / ((mh_real)1 << -scale) : row[j] * ((mh_real)1 << scale);
-    }
 }
-
-#else
-
-/* hypot without overflow or underflow of the squares. */
-static mh_real length(mh_real a, mh_real b)
-{
-    const mh_real large = mh_max(mh_abs(a), mh_abs(b));
-    const mh_real small = mh_min(mh_abs(a), mh_abs(b));
-    if (large == 0) {
-        return 0;
-    }
-    const mh_real ratio = small / large;
-    return large * mh_sqrt(1 + ratio * ratio);
-}
-
-/* Cosine and sine of the turn that brings (a, b) onto the axis of a; false if both are 0. */
-static bool turn(mh_real a, mh_real b, mh_share *c, mh_share *s)
-{
-    const mh_real diagonal = length(a, b);
-    if (diagonal == 0) {
-        return false;
-    }
-    *c = a / diagonal;
-    *s = b / diagonal;
-    return true;
-}
-
 #endif
 
 void mh_least_squares_begin(struct mh_least_squares *problem, uint8_t unknowns)
@@ -125,7 +78,7 @@ enum mh_status mh_least_squares_add(struct mh_least_squares *problem, const mh_r
 #endif
     for (uint8_t i = 0; i < n; i++) {
         mh_share c, s;
-        if (!turn(problem->r[i][i], rest[i], &c, &s)) {
+        if (!mh_turn(problem->r[i][i], rest[i], &c, &s)) {
             continue;
         }
         for (uint8_t j = i; j <= n; j++) {
@@ -134,7 +87,7 @@ enum mh_status mh_least_squares_add(struct mh_least_squares *problem, const mh_r
             rest[j] = mh_turned(c, rest[j], -s, kept);
         }
     }
-    problem->residual = length(problem->residual, rest[n]);
+    problem->residual = mh_hypot(problem->residual, rest[n]);
     if (problem->rows < UINT16_MAX) {
         problem->rows++;
     }
@@ -146,7 +99,7 @@ static bool dependent(const struct mh_least_squares *problem, uint8_t k)
 {
     mh_real column = 0;
     for (uint8_t i = 0; i <= k; i++) {
-        column = length(column, problem->r[i][k]);
+        column = mh_hypot(column, problem->r[i][k]);
     }
     return mh_abs(problem->r[k][k]) <= mh_mul(MH_LEAST_SQUARES_RANK, column);
 }

@@ -6,18 +6,23 @@
 #define DIFFUSION_MAX MH_REAL(500.0f)
 static mh_real in_grams(mh_concentration concentration) { return mh_q20_to_real(concentration); }
 /* mh_log takes the 20 fractional bits for 16, which puts the same constant on both */
-static mh_real log_ratio(mh_concentration over, mh_concentration under) { return mh_log(over) - mh_log(under); }
+static mh_real log_ratio(mh_concentration over, mh_concentration under)
+{
+    return mh_log(mh_real_from_bits(over)) - mh_log(mh_real_from_bits(under));
+}
+static bool is_finite(mh_concentration concentration) { return concentration < INT32_MAX; }
 #else
 #define EXPONENT_MAX 20.0f
 #define DIFFUSION_MIN MH_REAL_MIN
 #define DIFFUSION_MAX MH_REAL_MAX
 static mh_real in_grams(mh_concentration concentration) { return concentration; }
 static mh_real log_ratio(mh_concentration over, mh_concentration under) { return mh_log(over / under); }
+static bool is_finite(mh_concentration concentration) { return mh_finite(concentration); }
 #endif
 
 static enum mh_status check(const struct mh_puff_sample *sample)
 {
-    if (!mh_finite(sample->position.x) || !mh_finite(sample->position.y) || !mh_finite(sample->concentration)) {
+    if (!mh_finite(sample->position.x) || !mh_finite(sample->position.y) || !is_finite(sample->concentration)) {
         return MH_ERR_NOT_FINITE;
     }
     return sample->concentration > 0 ? MH_OK : MH_ERR_RANGE;

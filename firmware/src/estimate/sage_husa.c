@@ -42,18 +42,8 @@ enum mh_status mh_sage_husa_init(struct mh_sage_husa *filter, const struct mh_sa
 
 mh_share mh_sage_husa_weight(mh_real forgetting, uint32_t l)
 {
-#if MH_REAL_FIXED
-    /* the power by repeated squares, which needs neither logarithm nor exponential and has all digits */
-    const mh_share one = MH_SHARE(1.0f), share = forgetting * ((mh_real)1 << (MH_SHARE_BITS - MH_REAL_BITS));
-    mh_share power = one, square = share;
-    for (uint32_t n = l - 1; n > 0 && power > 0; n >>= 1) {
-        power = (n & 1) != 0 ? mh_part(power, square) : power;
-        square = mh_part(square, square);
-    }
-    return mh_part(one - share, one - power);
-#else
-    return (1 - forgetting) * (1 - mh_exp((mh_real)(l - 1) * mh_log(forgetting)));
-#endif
+    const mh_share one = MH_SHARE(1.0f), b = mh_share_from_real(forgetting);
+    return mh_share_mul(one - b, one - mh_share_power(b, l - 1));
 }
 
 /* False if `a` would leave the room that the sums count on (sage_husa.h); a float has room for all. */
@@ -70,7 +60,7 @@ static bool has_room(mh_real a, mh_real largest)
 enum mh_status mh_sage_husa_step(struct mh_sage_husa *filter, const struct mh_sage_husa_config *config,
                                  mh_real measurement, mh_real input, mh_share weight)
 {
-    if (!mh_finite(measurement) || !mh_finite(input) || !mh_finite(weight)) {
+    if (!mh_finite(measurement) || !mh_finite(input) || !mh_share_finite(weight)) {
         return MH_ERR_NOT_FINITE;
     }
     const struct mh_sage_husa old = *filter;
