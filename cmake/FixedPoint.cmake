@@ -7,6 +7,7 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   estimate/followed
   estimate/least_squares
   estimate/node_class
+  estimate/particles
   estimate/puff_fit
   estimate/sage_husa
   estimate/sensor
@@ -38,15 +39,19 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   protocol/rendezvous
   protocol/shunned
   protocol/vicinity
+  track/centroid
   track/luo
+  track/pftl
   wire/wire
   wire/wire_types
 )
 set(MOTEHOUND_FIXED_POINT_TESTS
+  test_centroid
   test_clock
   test_collection
   test_geographic
   test_geographic_collection
+  test_geometry
   test_head
   test_least_squares
   test_link
@@ -54,6 +59,8 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_mote
   test_neighbours
   test_parcel
+  test_particles
+  test_pftl
   test_puff_fit
   test_real_fixed
   test_rendezvous
@@ -67,4 +74,10 @@ set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
   test_identify
   test_scenario
   test_sensor_world
+)
+# workloads of tests/bench
+set(MOTEHOUND_FIXED_POINT_BENCHES
+  centroid
+  known
+  pftl
 )

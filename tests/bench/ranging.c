@@ -15,8 +15,8 @@ void ranging_measurements(unsigned step, uint8_t wanted, struct mh_measurement *
     for (int8_t i = -2; i <= 3; i++) {
         for (int8_t j = -2; j <= 3; j++) {
             const struct mh_place node = {(x_mm / pitch_mm + i) * pitch_mm, (y_mm / pitch_mm + j) * pitch_mm, 0};
-            const mh_real dx = (mh_real)(node.x_mm - x_mm) * 0.001f, dy = (mh_real)(node.y_mm - y_mm) * 0.001f;
-            const mh_q20 distance = mh_q20_from_real(mh_sqrt(dx * dx + dy * dy));
+            const struct mh_place target = {x_mm, y_mm, 0};
+            const mh_q20 distance = mh_q20_from_real(mh_vec2_length(mh_place_relative(&node, &target)));
             uint8_t at = count;
             for (; at > 0 && kept[at - 1] > distance; at--) {
                 if (at < wanted) {
@@ -25,7 +25,8 @@ void ranging_measurements(unsigned step, uint8_t wanted, struct mh_measurement *
                 }
             }
             if (at < wanted) {
-                const mh_real error = 17.3f * (mh_random_unit(&noise) - 0.5f); /* uniform, standard deviation 5 m */
+                const mh_real error = mh_mul(MH_REAL(17.3f), mh_random_unit(&noise) -
+                                                                 MH_REAL(0.5f)); /* uniform, standard deviation 5 m */
                 const struct mh_measurement taken = {.node = (mh_node_id)(10 * (i + 2) + j + 2),
                                                      .place = node,
                                                      .time = RANGING_INTERVAL * step,

@@ -30,7 +30,7 @@ struct mh_region {
     int32_t x_min_mm, x_max_mm, y_min_mm, y_max_mm;
 };
 
-/* (cos angle, sin angle) for |angle| <= pi, each within 3e-6 (fixed point: 5e-5): by polynomials of half the angle, without branches, so that a loop of them is
+/* (cos angle, sin angle) for |angle| <= pi, each within 3e-6 (fixed point: 5e-4): by polynomials of half the angle, without branches, so that a loop of them is
  * vectorised where the processor can. 16 multiplications. */
 static inline struct mh_vec2 mh_direction(mh_real angle)
 {
@@ -91,12 +91,51 @@ uint32_t mh_place_distance_mm(const struct mh_place *a, const struct mh_place *b
 /* floor of the square root */
 uint32_t mh_square_root(uint64_t square);
 
+/* Millimetres as metres. */
+#if MH_REAL_FIXED
+mh_real mh_metres(int32_t mm);
+#else
+static inline mh_real mh_metres(int32_t mm) { return mh_real_from_ratio(mm, 1000); }
+#endif
+
 /* place - origin in metres, horizontal part. */
 static inline struct mh_vec2 mh_place_relative(const struct mh_place *place, const struct mh_place *origin)
 {
-    struct mh_vec2 v = {mh_real_from_ratio(place->x_mm - origin->x_mm, 1000),
-                        mh_real_from_ratio(place->y_mm - origin->y_mm, 1000)};
+    struct mh_vec2 v = {mh_metres(place->x_mm - origin->x_mm), mh_metres(place->y_mm - origin->y_mm)};
     return v;
+}
+
+/* For the mean of places relative to an origin; begins as all zero. Fixed point: in millimetres, so that it does not overflow. */
+struct mh_place_sum {
+#if MH_REAL_FIXED
+    int64_t x_mm, y_mm;
+#else
+    mh_real x, y;
+#endif
+};
+
+static inline void mh_place_sum_add(struct mh_place_sum *sum, const struct mh_place *place,
+                                    const struct mh_place *origin)
+{
+#if MH_REAL_FIXED
+    sum->x_mm += (int64_t)place->x_mm - origin->x_mm;
+    sum->y_mm += (int64_t)place->y_mm - origin->y_mm;
+#else
+    const struct mh_vec2 at = mh_place_relative(place, origin);
+    sum->x += at.x;
+    sum->y += at.y;
+#endif
+}
+
+/* The mean of `count` >= 1. */
+static inline struct mh_vec2 mh_place_sum_mean(const struct mh_place_sum *sum, int32_t count)
+{
+#if MH_REAL_FIXED
+    const struct mh_vec2 mean = {mh_metres((int32_t)(sum->x_mm / count)), mh_metres((int32_t)(sum->y_mm / count))};
+#else
+    const struct mh_vec2 mean = {sum->x / mh_real_from_int(count), sum->y / mh_real_from_int(count)};
+#endif
+    return mean;
 }
 
 /* origin + offset, rounded to the millimetre; z is the origin's. Saturates at the range of a coordinate. */

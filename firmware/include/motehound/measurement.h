@@ -39,15 +39,11 @@ struct mh_interest {
 static inline struct mh_vec2 mh_centroid(const struct mh_measurement *measurements, size_t count,
                                          const struct mh_place *origin)
 {
-    struct mh_vec2 sum = {0, 0};
+    struct mh_place_sum sum = {0, 0};
     for (size_t i = 0; i < count; i++) {
-        const struct mh_vec2 at = mh_place_relative(&measurements[i].place, origin);
-        sum.x += at.x;
-        sum.y += at.y;
+        mh_place_sum_add(&sum, &measurements[i].place, origin);
     }
-    const struct mh_vec2 mean = {mh_div(sum.x, mh_real_from_int((int32_t)count)),
-                                 mh_div(sum.y, mh_real_from_int((int32_t)count))};
-    return mean;
+    return mh_place_sum_mean(&sum, (int32_t)count);
 }
 
 #endif

@@ -28,7 +28,14 @@
  * The covariance knows nothing of how wrong the region may be: the squared error over it averages 0.2 (sharp ranges) to 4.5 (slow targets) where 2 is
  * right.
  *
- * Cost: on average some four draws a particle, each of n roots and 7 n operations; 12 bytes a particle. See docs/costs.md. */
+ * Cost: on average some four draws a particle, each of n roots and 7 n operations; at most MH_PFTL_DRAWS_MAX. 12 bytes a particle, in fixed point 8. See docs/costs.md.
+ *
+ * Scaling and overflow (fixed point). Particles are held as particles.h says, in units of which `extent`, the farthest that a widened region reaches from its apex and a node
+ * from there, is at most 2^14: by the nominal values 202 m, 1/64 m. init() gives MH_ERR_ARGUMENT for a range_sd_m below 4 of these units (nominal: 0.063), for an extent above
+ * 16 km and for a sensing_range_m above 300, whose covariance would be no number. Positions and velocities have 16 fractional bits; a step whose expected position or mean is
+ * more than 32.7 km from the origin in x or y gives MH_ERR_NOT_FINITE, the track and the estimate as they were. Sums of squared residuals saturate, so that a particle that is very wrong
+ * is very wrong still. The arithmetic's errors, a unit in a distance and 1.5e-3 in a weight, are below a hundredth of what the noise of the ranges and the density of the particles
+ * do (docs/fixed_point.md). */
 #ifndef MOTEHOUND_PFTL_H
 #define MOTEHOUND_PFTL_H
 
@@ -36,10 +43,16 @@
 #include "motehound/particles.h"
 #include "motehound/tracker.h"
 
+#if MH_REAL_FIXED
+#define MH_PFTL_RANGE_MAX MH_REAL(300.0f)
+#else
+#define MH_PFTL_RANGE_MAX 1e4f
+#endif
+
 struct mh_pftl_config {
     mh_real speed_mps;       /* mean speed of the target's class, 1e-3 to 1e3; nominal 4.4704 (10 mph) */
     mh_real speed_sd_mps;    /* its standard deviation, 0 to 1e3; nominal a fifth of that */
-    mh_real sensing_range_m; /* how far a node measures, 1e-2 to 1e4; nominal 50 */
+    mh_real sensing_range_m; /* how far a node measures, 1e-2 to MH_PFTL_RANGE_MAX; nominal 50 */
     mh_real range_sd_m;      /* standard deviation of a range, 1e-3 to 1e3; nominal 5 */
     mh_real tolerance_m;     /* 0 (every position is reported) to 1e4; nominal 5 */
     uint16_t particles;      /* N, 1 to MH_PARTICLES_MAX; nominal 50 */
@@ -65,6 +78,12 @@ struct mh_pftl {
     struct mh_followed buffer;
     struct mh_particles particles;
 };
+
+/* A step draws at most so many times N particles: six regions, and the redraws of rejection control in the last. */
+#define MH_PFTL_DRAWS_MAX (6 + MH_PARTICLES_REDRAWS)
+
+/* A step draws at most so many times N particles: six regions, and the redraws of rejection control in the last. */
+#define MH_PFTL_DRAWS_MAX (6 + MH_PARTICLES_REDRAWS)
 
 extern const struct mh_tracker mh_tracker_pftl;
 

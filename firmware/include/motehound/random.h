@@ -17,9 +17,19 @@ struct mh_random {
 static inline uint32_t mh_random_word(struct mh_random *random)
 {
     const uint32_t word = random->a + random->b + random->counter++;
+#ifdef __AVR__ /* the same, of halves: it shifts 32 bits bit by bit */
+    const uint16_t b = (uint16_t)random->b, b_high = (uint16_t)(random->b >> 16);
+    const uint16_t c = (uint16_t)random->c, c_high = (uint16_t)(random->c >> 16);
+    const uint32_t shifted = (uint32_t)(b_high >> 9) << 16 | (uint16_t)(b_high << 7 | b >> 9);
+    const uint32_t turned = (uint32_t)(uint16_t)(c << 5 | c_high >> 11) << 16 | (uint16_t)(c_high << 5 | c >> 11);
+    random->a = random->b ^ shifted;
+    random->b = random->c * 9;
+    random->c = turned + word;
+#else
     random->a = random->b ^ (random->b >> 9);
     random->b = random->c + (random->c << 3);
     random->c = (random->c << 21 | random->c >> 11) + word;
+#endif
     return word;
 }
 

@@ -21,6 +21,18 @@ struct mh_place mh_place_from_offset(const struct mh_place *origin, struct mh_ve
     return place;
 }
 
+#if MH_REAL_FIXED
+/* mm * 8192 / 125, rounded, by one division of 32 bits */
+mh_real mh_metres(int32_t mm)
+{
+    const int32_t whole = mm / 125, rest = mm % 125, limit = INT32_MAX / 8192;
+    if (whole < -limit || whole > limit) {
+        return mm < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
+    }
+    return mh_real_from_bits(whole * 8192 + ((rest * 4294967 + 32768) >> 16));
+}
+#endif
+
 /* digit by digit in base 4 */
 uint32_t mh_square_root(uint64_t square)
 {

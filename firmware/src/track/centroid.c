@@ -6,7 +6,7 @@
 
 void mh_centroid_config_default(struct mh_centroid_config *config)
 {
-    config->sensing_range_m = 50.0f;
+    config->sensing_range_m = MH_REAL(50.0f);
     config->strongest = 0;
 }
 
@@ -15,7 +15,8 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     struct mh_centroid_state *centroid = state;
     const struct mh_centroid_config *given = config;
     if (centroid == NULL || given == NULL || interval < 1 || interval > 3600000u ||
-        !mh_within(given->sensing_range_m, 1e-2f, 1e4f) || given->strongest > MH_CENTROID_STRONGEST_MAX) {
+        !mh_within(given->sensing_range_m, MH_REAL(1e-2f), MH_CENTROID_RANGE_MAX) ||
+        given->strongest > MH_CENTROID_STRONGEST_MAX) {
         return MH_ERR_ARGUMENT;
     }
     const struct mh_centroid_state begun = {.config = *given};
@@ -54,15 +55,11 @@ static struct mh_vec2 centroid_of_strongest(const struct mh_measurement *measure
         }
         kept[place] = i;
     }
-    struct mh_vec2 sum = {0, 0};
+    struct mh_place_sum sum = {0, 0};
     for (uint8_t k = 0; k < kept_count; k++) {
-        const struct mh_vec2 at = mh_place_relative(&measurements[kept[k]].place, origin);
-        sum.x += at.x;
-        sum.y += at.y;
+        mh_place_sum_add(&sum, &measurements[kept[k]].place, origin);
     }
-    sum.x /= (mh_real)kept_count;
-    sum.y /= (mh_real)kept_count;
-    return sum;
+    return mh_place_sum_mean(&sum, kept_count);
 }
 
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
@@ -75,29 +72,37 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     if (centroid->stepped && !mh_tick_before(centroid->time, time)) {
         return MH_ERR_TIME;
     }
-    centroid->stepped = true;
-    centroid->time = time;
     const bool begins = !centroid->tracking;
     if (count == 0) {
+        centroid->stepped = true;
+        centroid->time = time;
         if (begins) {
             return MH_NONE;
         }
         *estimate = answer_at(centroid, time);
     } else {
+        struct mh_place origin = centroid->origin;
         if (begins) {
-            centroid->origin = measurements[0].place;
-            centroid->origin.z_mm = 0;
-            centroid->tracking = true;
+            origin = measurements[0].place;
+            origin.z_mm = 0;
         }
         const uint8_t most = centroid->config.strongest;
         const bool all = most == 0 || count <= most;
         const size_t used = all ? count : most;
-        centroid->position = all ? mh_centroid(measurements, count, &centroid->origin)
-                                 : centroid_of_strongest(measurements, count, most, &centroid->origin);
+        const struct mh_vec2 position =
+            all ? mh_centroid(measurements, count, &origin) : centroid_of_strongest(measurements, count, most, &origin);
+        if (!mh_vec2_finite(position)) {
+            return MH_ERR_NOT_FINITE;
+        }
+        centroid->origin = origin;
+        centroid->position = position;
+        centroid->tracking = centroid->stepped = true;
+        centroid->time = time;
         *estimate = answer_at(centroid, time);
         estimate->measurements = (uint16_t)(used < UINT16_MAX ? used : UINT16_MAX);
+        const mh_real radius = centroid->config.sensing_range_m;
         estimate->covariance.xx = estimate->covariance.yy =
-            mh_squared(centroid->config.sensing_range_m) / (4.0f * (mh_real)used);
+            mh_wide_div(mh_wide_mul(radius, radius), 4 * mh_real_from_int((int32_t)used));
         estimate->states = 2;
         estimate->flags = begins ? MH_ESTIMATE_STARTED : 0;
     }

@@ -3,22 +3,40 @@
 #include "motehound/bytes.h"
 
 #define LEVELS 5 /* of widening; the last is the disc about the nodes */
-#define HALF_ANGLE (MH_PI / 3.0f)
-#define SPEED_SIGMAS 3.0f
-#define GATE_SIGMAS 6.0f
+#define HALF_ANGLE (MH_PI / 3)
+#define SPEED_SIGMAS 3
+#define GATE_SIGMAS 6
 #define BYTES_AT_REST 12
 #define BYTES_MOVING 20
 
 void mh_pftl_config_default(struct mh_pftl_config *config)
 {
-    const struct mh_pftl_config nominal = {.speed_mps = 4.4704f,
-                                           .speed_sd_mps = 0.89408f,
-                                           .sensing_range_m = 50.0f,
-                                           .range_sd_m = 5.0f,
-                                           .tolerance_m = 5.0f,
+    const struct mh_pftl_config nominal = {.speed_mps = MH_REAL(4.4704f),
+                                           .speed_sd_mps = MH_REAL(0.89408f),
+                                           .sensing_range_m = MH_REAL(50.0f),
+                                           .range_sd_m = MH_REAL(5.0f),
+                                           .tolerance_m = MH_REAL(5.0f),
                                            .particles = 50,
                                            .seed = 1};
     *config = nominal;
+}
+
+static mh_real largest_speed(const struct mh_pftl_config *config)
+{
+    return mh_add(config->speed_mps, SPEED_SIGMAS * config->speed_sd_mps);
+}
+
+static mh_real slack(const struct mh_pftl_config *config) { return GATE_SIGMAS * config->range_sd_m; }
+
+/* From the apex of a region, as expect() and localise() make them, to the farthest of its particles, and from there to a node that measured one. */
+static mh_real extent(const struct mh_pftl_config *config, mh_real interval_s)
+{
+    const mh_real reach = mh_mul(largest_speed(config), interval_s), range = config->sensing_range_m;
+    const mh_real levels = MH_REAL((float)(LEVELS - 1));
+    const mh_real moving = mh_add(reach, mh_mul(levels, mh_max(config->tolerance_m, reach / 2)));
+    const mh_real starting = mh_add(range / 2, mh_add(reach, mh_mul(levels, reach)));
+    const mh_real region = mh_add(mh_max(moving, starting), mh_mul(MH_REAL(1.5f), config->range_sd_m));
+    return mh_add(mh_max(region, range), mh_add(range, slack(config)));
 }
 
 static enum mh_status init(void *state, const void *config, mh_tick interval)
@@ -26,22 +44,26 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
     struct mh_pftl *pftl = state;
     const struct mh_pftl_config *given = config;
     if (pftl == NULL || given == NULL || interval < 1 || interval > 3600000u ||
-        !mh_within(given->speed_mps, 1e-3f, 1e3f) || !mh_within(given->speed_sd_mps, 0.0f, 1e3f) ||
-        !mh_within(given->sensing_range_m, 1e-2f, 1e4f) || !mh_within(given->range_sd_m, 1e-3f, 1e3f) ||
-        !mh_within(given->tolerance_m, 0.0f, 1e4f) || given->particles < 1 || given->particles > MH_PARTICLES_MAX) {
+        !mh_within(given->speed_mps, MH_REAL(1e-3f), MH_REAL(1e3f)) ||
+        !mh_within(given->speed_sd_mps, 0, MH_REAL(1e3f)) ||
+        !mh_within(given->sensing_range_m, MH_REAL(1e-2f), MH_PFTL_RANGE_MAX) ||
+        !mh_within(given->range_sd_m, MH_REAL(1e-3f), MH_REAL(1e3f)) ||
+        !mh_within(given->tolerance_m, 0, MH_REAL(1e4f)) || given->particles < 1 ||
+        given->particles > MH_PARTICLES_MAX) {
         return MH_ERR_ARGUMENT;
     }
-    memset(pftl, 0, sizeof *pftl);
+    const mh_real interval_s = mh_real_from_ratio((int32_t)interval, (int32_t)MH_TICKS_PER_S);
+    if (mh_particles_init(&pftl->particles, given->particles, extent(given, interval_s), given->range_sd_m) != MH_OK) {
+        return MH_ERR_ARGUMENT;
+    }
+    const struct mh_followed nothing = {.known = false};
     pftl->config = *given;
-    pftl->interval_s = (mh_real)interval * (1.0f / (mh_real)MH_TICKS_PER_S);
-    pftl->particles.count = given->particles;
+    pftl->interval_s = interval_s;
     mh_random_init(&pftl->random, given->seed);
+    pftl->draws = 0;
+    pftl->stepped = pftl->restarted = pftl->moving = false;
+    pftl->buffer = nothing;
     return MH_OK;
-}
-
-static mh_real largest_speed(const struct mh_pftl *pftl)
-{
-    return pftl->config.speed_mps + SPEED_SIGMAS * pftl->config.speed_sd_mps;
 }
 
 /* The ranges of one instant, and where in the plane they are looked for. */
@@ -50,13 +72,13 @@ struct search {
     const struct mh_measurement *measurements;
     size_t count;
     struct mh_sector region;
-    mh_real least; /* sum of squared residuals */
+    mh_particle_weight least; /* sum of squared residuals */
 };
 
 static bool usable(const struct mh_pftl *pftl, const struct mh_measurement *m)
 {
-    const mh_real slack = GATE_SIGMAS * pftl->config.range_sd_m;
-    return mh_within(mh_q20_to_real(m->value), -slack, pftl->config.sensing_range_m + slack);
+    const mh_real beyond = slack(&pftl->config);
+    return mh_within(mh_q20_to_real(m->value), -beyond, pftl->config.sensing_range_m + beyond);
 }
 
 /* The mean place of the n >= 1 nodes whose ranges are usable. */
@@ -66,33 +88,39 @@ static struct mh_vec2 centre_of(const struct search *search, uint16_t n)
     for (size_t j = 0; j < search->count; j++) {
         if (usable(search->pftl, &search->measurements[j])) {
             const struct mh_vec2 at = mh_place_relative(&search->measurements[j].place, &search->pftl->origin);
-            centre.x += at.x / (mh_real)n;
-            centre.y += at.y / (mh_real)n;
+            centre.x += mh_div(at.x, mh_real_from_int(n));
+            centre.y += mh_div(at.y, mh_real_from_int(n));
         }
     }
     return centre;
 }
 
-/* Draw particles from, .. in the region and sum their squared residuals. */
-static void draw(struct search *search, uint16_t from)
+/* Draw particles from, .. in the region and sum their squared residuals: of sums that are to be compared with `least`; no more once all are above the bound, if
+ * there is one. */
+static void draw(struct search *search, uint16_t from, mh_particle_weight least, mh_particle_weight bound)
 {
     struct mh_pftl *pftl = search->pftl;
     struct mh_particles *particles = &pftl->particles;
+    const mh_particle_weight beyond = mh_particles_worthless(particles, least, pftl->config.range_sd_m);
     mh_particles_draw(particles, from, &search->region, &pftl->random);
+    pftl->draws += (uint32_t)(particles->count - from);
     for (size_t j = 0; j < search->count; j++) {
         const struct mh_measurement *m = &search->measurements[j];
-        if (usable(pftl, m)) {
-            mh_particles_add_range(particles, from, mh_place_relative(&m->place, &pftl->origin),
-                                   mh_q20_to_real(m->value));
+        if (!usable(pftl, m)) {
+            continue;
+        }
+        mh_particles_add_range(particles, from, mh_place_relative(&m->place, &pftl->origin), mh_q20_to_real(m->value),
+                               beyond);
+        if (bound < MH_PARTICLE_SUM_MAX && mh_particles_least(particles) > bound) {
+            return;
         }
     }
-    pftl->draws += (uint32_t)(particles->count - from);
 }
 
 static void redraw(void *context, struct mh_particles *particles, uint16_t from)
 {
     struct search *search = context;
-    draw(search, from);
+    draw(search, from, search->least, MH_PARTICLE_SUM_MAX);
     mh_particles_weigh(particles, from, search->least, search->pftl->config.range_sd_m);
 }
 
@@ -101,40 +129,38 @@ static void expect(const struct mh_pftl *pftl, struct mh_vec2 expected, uint16_t
                    mh_real *widening)
 {
     const struct mh_vec2 v = pftl->buffer.velocity;
-    const mh_real speed = mh_sqrt(v.x * v.x + v.y * v.y), interval = pftl->interval_s;
-    const mh_real reach = largest_speed(pftl) * interval;
+    const mh_real speed = mh_vec2_length(v), interval = pftl->interval_s;
+    const mh_real reach = mh_mul(largest_speed(&pftl->config), interval);
     const mh_real slowest = pftl->config.speed_mps - SPEED_SIGMAS * pftl->config.speed_sd_mps;
     region->apex = expected;
-    region->axis.x = speed > 0.0f ? v.x / speed : 1.0f;
-    region->axis.y = speed > 0.0f ? v.y / speed : 0.0f;
+    region->axis.x = speed > 0 ? mh_div(v.x, speed) : MH_REAL(1.0f);
+    region->axis.y = speed > 0 ? mh_div(v.y, speed) : 0;
     if (pftl->moving) {
-        region->apex.x -= v.x * interval;
-        region->apex.y -= v.y * interval;
-        region->inner = mh_max(0.0f, slowest * interval);
+        region->apex = mh_vec2_along(expected, -interval, v);
+        region->inner = mh_max(0, mh_mul(slowest, interval));
         region->outer = reach;
         region->half_angle = HALF_ANGLE;
-        *widening = mh_max(pftl->config.tolerance_m, 0.5f * reach);
+        *widening = mh_max(pftl->config.tolerance_m, reach / 2);
     } else {
-        region->inner = 0.0f;
-        region->outer = reach + 0.5f * pftl->config.sensing_range_m;
+        region->inner = 0;
+        region->outer = reach + pftl->config.sensing_range_m / 2;
         region->half_angle = MH_PI;
         *widening = reach;
     }
-    const mh_real margin = pftl->config.range_sd_m * mh_sqrt(2.0f / (mh_real)n);
-    region->half_angle = mh_min(MH_PI, region->half_angle + mh_atan2(margin, 0.5f * (region->inner + region->outer)));
-    region->inner = mh_max(0.0f, region->inner - margin);
+    const mh_real margin = mh_mul(pftl->config.range_sd_m, mh_sqrt(mh_div(MH_REAL(2.0f), mh_real_from_int(n))));
+    region->half_angle = mh_min(MH_PI, region->half_angle + mh_atan2(margin, (region->inner + region->outer) / 2));
+    region->inner = mh_max(0, region->inner - margin);
     region->outer += margin;
 }
 
-/* A particle fits the n ranges: residuals as their noise makes them, and as much again as the distance to the nearest of N particles does. */
-static bool fits(const struct search *search, uint16_t n)
+/* The largest sum of a particle that fits the n ranges: residuals as their noise makes them, and as much again as the distance to the nearest of N particles does. */
+static mh_particle_weight fit(const struct search *search, uint16_t n)
 {
     const struct mh_pftl_config *config = &search->pftl->config;
-    const mh_real ranges = (mh_real)n;
-    const mh_real noise = config->range_sd_m * config->range_sd_m * (ranges + mh_sqrt(2.0f * ranges));
-    const mh_real spacing =
-        3.0f * ranges * mh_sector_area(&search->region) / (2.0f * MH_PI * (mh_real)config->particles);
-    return search->least <= noise + spacing;
+    const mh_real ranges = mh_real_from_int(n);
+    const mh_wide noise = mh_wide_mul(mh_squared(config->range_sd_m), ranges + mh_sqrt(2 * ranges));
+    const mh_wide spacing = mh_sector_share(&search->region, 3 * ranges, config->particles);
+    return mh_particles_sum(&search->pftl->particles, noise + spacing);
 }
 
 /* Position from n >= 1 usable ranges, about the place expected now. */
@@ -142,29 +168,31 @@ static enum mh_status localise(struct search *search, struct mh_vec2 expected, u
 {
     struct mh_pftl *pftl = search->pftl;
     struct mh_particles *particles = &pftl->particles;
-    const mh_real enough = 0.5f * (mh_real)particles->count;
+    const mh_real enough = mh_real_from_int(particles->count) / 2;
     struct mh_sector level_0;
     mh_real widening;
     expect(pftl, expected, n, &level_0, &widening);
-    mh_real effective = 0.0f;
+    mh_real effective = 0;
     bool accepted = false;
     for (uint8_t level = pftl->restarted ? LEVELS : 0; !accepted; level++) {
         struct mh_sector *region = &search->region;
         *region = level_0;
         if (level < LEVELS) {
-            region->inner = mh_max(0.0f, level_0.inner - (mh_real)level * widening);
-            region->outer += (mh_real)level * widening;
-            region->half_angle = mh_min(MH_PI, (mh_real)(1 + level) * level_0.half_angle);
+            const mh_real wider = mh_mul(mh_real_from_int(level), widening);
+            region->inner = mh_max(0, level_0.inner - wider);
+            region->outer += wider;
+            region->half_angle = mh_min(MH_PI, mh_mul(mh_real_from_int(1 + level), level_0.half_angle));
         } else {
             region->apex = centre_of(search, n);
-            region->inner = 0.0f;
+            region->inner = 0;
             region->outer = pftl->config.sensing_range_m;
             region->half_angle = MH_PI;
         }
-        draw(search, 0);
-        search->least = mh_particles_least(particles);
         const bool last = level == LEVELS;
-        if (!last && !pftl->config.literal && !fits(search, n)) {
+        const mh_particle_weight bound = last || pftl->config.literal ? MH_PARTICLE_SUM_MAX : fit(search, n);
+        draw(search, 0, bound, bound);
+        search->least = mh_particles_least(particles);
+        if (search->least > bound) {
             continue;
         }
         mh_particles_weigh(particles, 0, search->least, pftl->config.range_sd_m);
@@ -177,7 +205,7 @@ static enum mh_status localise(struct search *search, struct mh_vec2 expected, u
                                          : mh_particles_reject(particles, &pftl->random, redraw, search);
     }
     /* a particle stands for its share of the region's area */
-    const mh_real resolution = mh_sector_area(&search->region) / (2.0f * MH_PI * (mh_real)particles->count);
+    const mh_real resolution = mh_wide_to_real(mh_sector_share(&search->region, MH_REAL(1.0f), particles->count));
     if (status == MH_OK) {
         status = mh_particles_mean(particles, resolution, &estimate->position, &estimate->covariance);
     }
@@ -190,12 +218,13 @@ static void store(struct mh_pftl *pftl, mh_tick time, struct mh_vec2 position)
     pftl->moving = pftl->buffer.known && !pftl->restarted;
     if (pftl->moving) {
         const mh_real seconds = mh_seconds_between(pftl->buffer.time, time);
-        v.x = (position.x - pftl->buffer.position.x) / seconds;
-        v.y = (position.y - pftl->buffer.position.y) / seconds;
-        const mh_real excess = mh_sqrt(v.x * v.x + v.y * v.y) / largest_speed(pftl);
-        if (excess > 1.0f) {
-            v.x /= excess;
-            v.y /= excess;
+        v = mh_vec2_between(pftl->buffer.position, position);
+        v.x = mh_div(v.x, seconds);
+        v.y = mh_div(v.y, seconds);
+        const mh_real excess = mh_div(mh_vec2_length(v), largest_speed(&pftl->config));
+        if (excess > MH_REAL(1.0f)) {
+            v.x = mh_div(v.x, excess);
+            v.y = mh_div(v.y, excess);
         }
     }
     const struct mh_followed buffer = {.time = time, .position = position, .velocity = v, .known = true};
@@ -213,8 +242,6 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     if (pftl->stepped && !mh_tick_before(pftl->time, time)) {
         return MH_ERR_TIME;
     }
-    pftl->stepped = true;
-    pftl->time = time;
     uint16_t n = 0;
     for (size_t j = 0; j < count && n < UINT16_MAX; j++) {
         n = (uint16_t)(n + (usable(pftl, &measurements[j]) ? 1 : 0));
@@ -226,20 +253,27 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     bool refreshed = false;
     if (begins) {
         if (n == 0) {
+            pftl->stepped = true;
+            pftl->time = time;
             return MH_NONE;
         }
         pftl->origin = measurements[0].place;
         pftl->origin.z_mm = 0;
         answer.position = centre_of(&search, n);
         const mh_real radius = pftl->config.sensing_range_m;
-        answer.covariance.xx = answer.covariance.yy = radius * radius / (4.0f * (mh_real)n);
+        answer.covariance.xx = answer.covariance.yy = mh_wide_div(mh_wide_mul(radius, radius), 4 * mh_real_from_int(n));
         answer.flags = MH_ESTIMATE_STARTED;
         refreshed = true;
     } else {
-        if (mh_followed_predict(&pftl->buffer, time, &expected) != MH_OK) {
-            return MH_NONE;
+        enum mh_status status = mh_followed_predict(&pftl->buffer, time, &expected);
+        if (status != MH_OK) {
+            return status;
         }
-        if (n == 0 || localise(&search, expected, n, &answer) != MH_OK) {
+        status = n > 0 ? localise(&search, expected, n, &answer) : MH_NONE;
+        if (status == MH_ERR_NOT_FINITE) {
+            return status;
+        }
+        if (status != MH_OK) {
             answer.position = expected;
             answer.flags = MH_ESTIMATE_COASTED;
         } else {
@@ -247,6 +281,8 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
                         mh_followed_differs(&pftl->buffer, time, answer.position, pftl->config.tolerance_m);
         }
     }
+    pftl->stepped = true;
+    pftl->time = time;
     if (refreshed) {
         store(pftl, time, answer.position);
         answer.flags |= MH_ESTIMATE_REFRESHED;
@@ -332,7 +368,7 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
     }
     /* a rounding above the largest speed at most: heads of one field know the same class */
     if (!mh_coordinate_valid(place.x_mm) || !mh_coordinate_valid(place.y_mm) ||
-        !(mh_sqrt(v.x * v.x + v.y * v.y) <= 1.001f * largest_speed(pftl))) {
+        !(mh_vec2_length(v) <= mh_mul(MH_REAL(1.001f), largest_speed(&pftl->config)))) {
         return MH_ERR_CORRUPT;
     }
     const struct mh_followed buffer = {.time = time, .velocity = v, .known = true};

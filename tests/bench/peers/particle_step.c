@@ -86,7 +86,7 @@ static struct mh_vec2 bootstrap_step(struct bootstrap *filter, const float *rang
         particles->weight[i] = 0;
     }
     for (int i = 0; i < STATIONS; i++) {
-        mh_particles_add_range(particles, 0, filter->stations[i], ranges[i]);
+        mh_particles_add_range(particles, 0, filter->stations[i], ranges[i], MH_PARTICLE_SUM_MAX);
     }
     mh_particles_weigh(particles, 0, mh_particles_least(particles), SD_M);
     struct mh_vec2 mean;
