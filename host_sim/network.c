@@ -1,5 +1,8 @@
 #include "network.h"
 
+#include "hosts/boards.h"
+#include "scenario/text.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -270,6 +273,12 @@ static void act(struct network *network, const struct host_action *action)
             network->out_of_memory = true;
         }
         break;
+    case HOST_WORK:
+        account_work(&network->account, action->mote, action->time,
+                     action->as.work.localises ? ENERGY_LOCALISATION
+                                               : account_cause((enum mh_message_kind)action->as.work.message),
+                     action->as.work.duration_us);
+        break;
     }
 }
 
@@ -516,16 +525,22 @@ static int make_host(struct network *network)
     const struct roster *roster = network->config.roster;
     const struct host_provider *hosts = network->config.hosts;
     const uint32_t *order = radio_order(&network->radio);
-    return hosts ? hosts->open(hosts->context, &network->host, roster->count, order, network->config.seed)
-                 : host_in_process(&network->host, roster->count, order, roster->kit.protocol.protocol);
+    const struct mh_protocol *protocol = roster->kit.protocol.protocol;
+    return hosts ? hosts->open(hosts->context, &network->host, roster->count, order, protocol, network->config.seed)
+                 : host_in_process(&network->host, roster->count, order, protocol);
 }
 
 static int bring_up(struct network *network)
 {
     const struct roster *roster = network->config.roster;
     const struct observer *observer = network->config.observer;
+    const struct emulation *emulation = network->config.hosts ? network->config.hosts->emulation : NULL;
     for (uint32_t i = 0; i < roster->count; i++) {
-        const struct host_mote what = roster_mote(roster, i);
+        struct host_mote what = roster_mote(roster, i);
+        what.board = emulation_board(emulation, what.id);
+        if (what.board) {
+            account_measured(&network->account, i);
+        }
         const struct host_event start = {.kind = HOST_START, .mote = i};
         if (network->host.add(network->host.state, i, &what)) {
             return -1;
@@ -557,12 +572,30 @@ static int schedule_motes(struct network *network)
     return event_queue_push(&network->instants, network->mote_interval, INSTANT_OF_MOTES);
 }
 
+/* Every node that is to live on a board is one of the network. */
+static int check_emulation(const struct network_config *config, char *error, size_t error_size)
+{
+    const struct emulation *emulation = config->hosts ? config->hosts->emulation : NULL;
+    const struct roster *roster = config->roster;
+    for (size_t i = 0; emulation && i < emulation->count; i++) {
+        const mh_node_id node = emulation->list[i].node;
+        if (roster_id(roster, roster_find(roster, node)) != node) {
+            return fail(error, error_size, "--emulate: expected a node of the network, %lu to %lu, found %lu",
+                        (unsigned long)roster_id(roster, 0), (unsigned long)roster->sink_id, (unsigned long)node);
+        }
+    }
+    return 0;
+}
+
 int network_make(struct network *network, const struct network_config *config, char *error, size_t error_size)
 {
     const struct roster *roster = config->roster;
     const double lookahead_us = round(config->scenario->radio.delay_s * SIM_TIME_PER_S);
     *network = (struct network){.config = *config, .lookahead = lookahead_us > 1 ? (sim_time)lookahead_us : 1};
     frame_kinds_learn(&network->kinds);
+    if (check_emulation(config, error, error_size)) {
+        return -1;
+    }
     if (make_radio(network) ||
         account_open(&network->account, config->scenario, radio_order(&network->radio), roster->count,
                      roster->count - 1) ||
@@ -598,7 +631,7 @@ int network_schedule(struct network *network, sim_time time)
 
 int network_count(struct network *network, struct simulation_counters *counters, char *error, size_t error_size)
 {
-    struct host_totals totals = {0};
+    struct host_totals totals = {.boards = network->config.hosts ? network->config.hosts->boards : NULL};
     if (network->host.count(network->host.state, &totals, error, error_size)) {
         return -1;
     }

@@ -1,8 +1,10 @@
 #include "simulation.h"
 
+#include "hosts/boards.h"
 #include "ideal/ideal.h"
 #include "network.h"
 #include "reals.h"
+#include "scenario/text.h"
 #include "world/field.h"
 #include "world/gas.h"
 #include "world/identify.h"
@@ -355,6 +357,9 @@ int simulation_run_on(const struct host_provider *hosts, const struct scenario *
                       const struct observer *observer, const volatile sig_atomic_t *stop,
                       struct simulation_counters *counters, char *error, size_t error_size)
 {
+    if (scenario->network.ideal && hosts && hosts->emulation && hosts->emulation->count > 0) {
+        return fail(error, error_size, "--emulate: expected a network of motes, found network.ideal");
+    }
     if (scenario->network.ideal) {
         return ideal_run(scenario, seed, observer, stop, counters, error, error_size);
     }

@@ -4,6 +4,7 @@
 #define MOTEHOUND_SIM_COMMAND_H
 
 #include "cli/batch.h"
+#include "hosts/boards.h"
 #include "record/output.h"
 
 enum { COMMAND_ERROR_SIZE = 5000 };
@@ -29,7 +30,8 @@ struct session {
     const char *bus_url;
     unsigned workers, joining; /* that host the motes, on bus_url; neither: this process does */
     bool respawn;
-    double drop_share; /* of the messages to and from workers */
+    struct emulation emulation; /* motes that live on boards */
+    double drop_share;          /* of the messages to and from workers */
     bool log;
 };
 int session_execute(struct command *command, struct session *session);

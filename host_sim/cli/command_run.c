@@ -11,7 +11,8 @@
 static const char help[] =
     "motehound run SCENARIO [--set key=value]... [--runs N] [--seed S] [--jobs J] [--out DIR] [--bus URL] [--log] "
     "[--sweep]\n"
-    "              [--pace X] [--workers N] [--join N] [--respawn]\n"
+    "              [--pace X] [--workers N] [--join N] [--respawn] [--emulate NODE=BOARD[,NODE=BOARD]...] [--images "
+    "DIR]\n"
     "\n"
     "Simulates a network of motes. SCENARIO is a YAML file or a name of `motehound list`.\n"
     "  --set key=value  change any key of the scenario (`motehound list --keys`); may be repeated\n"
@@ -28,6 +29,13 @@ static const char help[] =
     "  --workers N      let the motes live in N other processes of this machine, over --bus URL\n"
     "  --join N         wait for N workers more, started elsewhere with `motehound worker --bus URL`\n"
     "  --respawn        replace a worker that dies (it repeats all that was done), instead of ending the run\n"
+    "  --emulate NODE=BOARD[,NODE=BOARD]...\n"
+    "                   let these motes live on emulated boards, with the images that are made for them: atmega128,\n"
+    "                   cortex-m0, cortex-m3, cortex-m4f, cortex-m33, riscv32 or host; with -fixed behind it the image "
+    "in\n"
+    "                   fixed point (docs/emulation.md)\n"
+    "  --images DIR     folder of the images, DIR/BOARD/IMAGE; default $MOTEHOUND_IMAGES, or else that of "
+    "tools/images\n"
     "  --drop-share P   for tests: drop this share of the messages to and from the workers\n"
     "  --help           this text\n"
     "\n"
@@ -41,9 +49,29 @@ struct run_options {
     uint64_t runs, seed, jobs, workers, joining;
     double drop_share, pace;
     bool log, sweep, respawn, help;
+    const char *images;
+    struct emulation emulation;
 };
 
-enum { SET, RUNS, SEED, JOBS, OUT, BUS, LOG, SWEEP, PACE, WORKERS, JOIN, RESPAWN, DROP_SHARE, HELP, RULES };
+enum {
+    SET,
+    RUNS,
+    SEED,
+    JOBS,
+    OUT,
+    BUS,
+    LOG,
+    SWEEP,
+    PACE,
+    WORKERS,
+    JOIN,
+    RESPAWN,
+    EMULATE,
+    IMAGES,
+    DROP_SHARE,
+    HELP,
+    RULES
+};
 
 static const struct option_rule rules[RULES] = {
     [SET] = {"--set", true, true},           [RUNS] = {"--runs", true, false},
@@ -53,6 +81,7 @@ static const struct option_rule rules[RULES] = {
     [WORKERS] = {"--workers", true, false},  [JOIN] = {"--join", true, false},
     [RESPAWN] = {"--respawn", false, false}, [DROP_SHARE] = {"--drop-share", true, false},
     [PACE] = {"--pace", true, false},        [HELP] = {"--help", false, false},
+    [EMULATE] = {"--emulate", true, true},   [IMAGES] = {"--images", true, false},
 };
 
 static int option_pace(const char *value, double *pace, char *error)
@@ -119,6 +148,12 @@ static int read_options(struct command *command, struct run_options *options)
         case RESPAWN:
             options->respawn = true;
             break;
+        case EMULATE:
+            status = emulation_parse(&options->emulation, value, error, COMMAND_ERROR_SIZE);
+            break;
+        case IMAGES:
+            options->images = value;
+            break;
         case DROP_SHARE:
             status = option_share("--drop-share", value, &options->drop_share, error, COMMAND_ERROR_SIZE);
             break;
@@ -147,6 +182,12 @@ static int read_options(struct command *command, struct run_options *options)
         return fail(error, COMMAND_ERROR_SIZE, "--workers: expected one run at a time, found --jobs %llu",
                     (unsigned long long)options->jobs);
     }
+    if (options->emulation.count > 0 && options->jobs > 1) {
+        return fail(error, COMMAND_ERROR_SIZE, "--emulate: expected one run at a time, found --jobs %llu",
+                    (unsigned long long)options->jobs);
+    }
+    snprintf(options->emulation.images, sizeof options->emulation.images, "%s",
+             options->images != NULL ? options->images : emulation_images());
     return 0;
 }
 
@@ -250,6 +291,7 @@ int command_run(struct command *command)
         .workers = (unsigned)options.workers,
         .joining = (unsigned)options.joining,
         .respawn = options.respawn,
+        .emulation = options.emulation,
         .drop_share = options.drop_share,
         .log = options.log,
     };

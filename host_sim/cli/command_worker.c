@@ -1,6 +1,7 @@
 /* motehound worker: host motes of a run that another process leads. */
 #include "cli/command.h"
 #include "cli/options.h"
+#include "hosts/boards.h"
 #include "hosts/worker.h"
 #include "scenario/text.h"
 
@@ -10,23 +11,27 @@
 #include <unistd.h>
 
 static const char help[] =
-    "motehound worker --bus URL\n"
+    "motehound worker --bus URL [--images DIR]\n"
     "\n"
     "Waits on an LCM bus for a run that calls for workers (`motehound run ... --bus URL --join N`), joins it, hosts\n"
     "its share of the motes and ends when the run does. The run's results do not depend on where its motes live.\n"
     "  --bus URL        the bus of the run, such as udpm://239.255.76.67:7667?ttl=1\n"
+    "  --images DIR     images of boards, for motes that live on some (docs/emulation.md)\n"
     "  --drop-share P   for tests: drop this share of the messages sent\n"
     "  --help           this text\n"
     "\n"
     "Both must be the same version of motehound. `motehound run --workers N` starts workers of this machine by\n"
     "itself. See docs/workers.md.\n";
 
-enum { BUS, SESSION, KEY, DROP_SHARE, HELP, RULES };
+enum { BUS, SESSION, KEY, IMAGES, DROP_SHARE, HELP, RULES };
 
 /* --session and --key are how `motehound run` tells its own workers who they are, with a pipe as their standard input. */
 static const struct option_rule rules[RULES] = {
-    [BUS] = {"--bus", true, false},    [SESSION] = {"--session", true, false},
-    [KEY] = {"--key", true, false},    [DROP_SHARE] = {"--drop-share", true, false},
+    [BUS] = {"--bus", true, false},
+    [IMAGES] = {"--images", true, false},
+    [SESSION] = {"--session", true, false},
+    [KEY] = {"--key", true, false},
+    [DROP_SHARE] = {"--drop-share", true, false},
     [HELP] = {"--help", false, false},
 };
 
@@ -45,7 +50,8 @@ static int read_number(struct command *command, const char *name, const char *va
 
 int command_worker(struct command *command)
 {
-    struct worker_config config = {.version = MOTEHOUND_VERSION, .lifeline = -1, .stop = command->stop};
+    struct worker_config config = {
+        .version = MOTEHOUND_VERSION, .images = emulation_images(), .lifeline = -1, .stop = command->stop};
     struct option_reader reader = {.argc = command->argc, .argv = command->argv, .rules = rules, .rule_count = RULES};
     size_t rule = 0;
     const char *value = NULL;
@@ -69,6 +75,9 @@ int command_worker(struct command *command)
         case KEY:
             status = read_number(command, "--key", value, &config.worker);
             config.lifeline = STDIN_FILENO;
+            break;
+        case IMAGES:
+            config.images = value;
             break;
         case DROP_SHARE:
             status = option_share("--drop-share", value, &config.drop_share, command->error, COMMAND_ERROR_SIZE);

@@ -127,6 +127,23 @@ static void put_table(const struct session *session, struct results *results)
     }
 }
 
+static void put_boards(const struct results *results)
+{
+    for (size_t i = 0; i < results->boards.count; i++) {
+        const struct board_result *board = &results->boards.list[i];
+        const double mean = board->events > 0 ? (double)board->cycles / (double)board->events : 0;
+        printf("node %lu on %s: %llu events, %.3g ms in the mean, %.3g ms at most; %llu late, %llu overlapped",
+               (unsigned long)board->node, board->board, (unsigned long long)board->events, 1e3 * mean / board->rate_hz,
+               1e3 * (double)board->cycles_max / board->rate_hz, (unsigned long long)board->missed,
+               (unsigned long long)board->overlapped);
+        if (board->ram > 0) {
+            printf("; %lu of %lu bytes of RAM never used", (unsigned long)board_ram_free(board),
+                   (unsigned long)board->ram);
+        }
+        putchar('\n');
+    }
+}
+
 static int execute(struct session *session, struct results *results, char *error)
 {
     struct progress progress;
@@ -138,11 +155,27 @@ static int execute(struct session *session, struct results *results, char *error
     return status;
 }
 
+static int open_boards(void *context, struct host *host, uint32_t count, const uint32_t *order,
+                       const struct mh_protocol *protocol, uint64_t seed)
+{
+    const struct session *session = context;
+    (void)seed;
+    return host_boards(host, count, order, protocol, session->emulation.images);
+}
+
+static int execute_with_boards(struct session *session, struct results *results, char *error)
+{
+    const struct host_provider provider = {session, open_boards, &session->emulation, &results->boards};
+    session->batch.hosts = &provider;
+    return execute(session, results, error);
+}
+
 static int execute_on_workers(struct session *session, struct results *results, char *error)
 {
     const struct worker_pool_config config = {.url = session->bus_url,
                                               .version = session->batch.version,
                                               .program = "/proc/self/exe",
+                                              .images = session->emulation.images,
                                               .local = session->workers,
                                               .joining = session->joining,
                                               .respawn = session->respawn,
@@ -152,6 +185,8 @@ static int execute_on_workers(struct session *session, struct results *results, 
     if (workers_open(&workers, &config, session->batch.scenario, error, COMMAND_ERROR_SIZE) != 0) {
         return -1;
     }
+    workers.provider.emulation = &session->emulation;
+    workers.provider.boards = &results->boards;
     session->batch.hosts = &workers.provider;
     const int status = execute(session, results, error);
     if (status == 0) {
@@ -173,6 +208,7 @@ int session_execute(struct command *command, struct session *session)
     int status = bus_outside(session->bus_url, &session->batch.outside, error, COMMAND_ERROR_SIZE);
     if (status == 0) {
         status = session->workers + session->joining > 0 ? execute_on_workers(session, &results, error)
+                 : session->emulation.count > 0          ? execute_with_boards(session, &results, error)
                                                          : execute(session, &results, error);
     }
     if (session->batch.outside != NULL) {
@@ -189,6 +225,7 @@ int session_execute(struct command *command, struct session *session)
     }
     put_table(session, &results);
     put_leak(session, &results);
+    put_boards(&results);
     if (results_commit(&results, session->batch.version, error, COMMAND_ERROR_SIZE) != 0) {
         return 1;
     }

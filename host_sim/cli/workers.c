@@ -33,9 +33,11 @@ static char *scenario_text(const struct scenario *scenario)
     return text;
 }
 
-static int open_host(void *context, struct host *host, uint32_t count, const uint32_t *order, uint64_t seed)
+static int open_host(void *context, struct host *host, uint32_t count, const uint32_t *order,
+                     const struct mh_protocol *protocol, uint64_t seed)
 {
     const struct workers *workers = context;
+    (void)protocol; /* the workers find it in the scenario */
     return host_remote(host, count, order, workers->scenario, seed, workers->pool);
 }
 

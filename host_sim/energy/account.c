@@ -1,5 +1,7 @@
 #include "energy/account.h"
 
+#include <stdlib.h>
+
 int account_open(struct account *account, const struct scenario *scenario, const uint32_t *order, uint32_t motes,
                  uint32_t sink)
 {
@@ -22,7 +24,9 @@ int account_open(struct account *account, const struct scenario *scenario, const
     account->sensing_us = energy_sensing_us();
     account->sample_us = energy_sample_us(profile);
     account->frame_us = energy_frame_us(profile);
-    if (energy_make(&account->ledger, &config, motes)) {
+    account->measured = calloc(motes, sizeof *account->measured);
+    if (!account->measured || energy_make(&account->ledger, &config, motes)) {
+        free(account->measured);
         return -1;
     }
     for (uint32_t i = 0; i < motes; i++) {
@@ -35,6 +39,7 @@ void account_close(struct account *account)
 {
     if (account->open) {
         energy_free(&account->ledger);
+        free(account->measured);
     }
     *account = (struct account){0};
 }
@@ -90,18 +95,40 @@ void account_radio(struct account *account, uint32_t mote, sim_time time, enum r
     energy_radio(&account->ledger, mote, time, states[state], (enum energy_cause)cause);
 }
 
+/* Work that nobody measures. */
+static void assume(struct account *account, uint32_t mote, sim_time time, enum energy_cause cause, uint64_t takes_us)
+{
+    if (!account->measured[mote]) {
+        energy_charge(&account->ledger, mote, time, ENERGY_CPU, cause, takes_us);
+    }
+}
+
+void account_measured(struct account *account, uint32_t mote)
+{
+    if (account->open) {
+        account->measured[mote] = true;
+    }
+}
+
+void account_work(struct account *account, uint32_t mote, sim_time time, enum energy_cause cause, uint64_t duration_us)
+{
+    if (account->open) {
+        energy_charge(&account->ledger, mote, time, ENERGY_CPU, cause, duration_us);
+    }
+}
+
 void account_sample(struct account *account, uint32_t mote, sim_time time)
 {
     if (account->open) {
         energy_charge(&account->ledger, mote, time, ENERGY_SENSING, ENERGY_LOCALISATION, account->sensing_us);
-        energy_charge(&account->ledger, mote, time, ENERGY_CPU, ENERGY_LOCALISATION, account->sample_us);
+        assume(account, mote, time, ENERGY_LOCALISATION, account->sample_us);
     }
 }
 
 void account_frame(struct account *account, uint32_t mote, sim_time time, enum energy_cause cause)
 {
     if (account->open) {
-        energy_charge(&account->ledger, mote, time, ENERGY_CPU, cause, account->frame_us);
+        assume(account, mote, time, cause, account->frame_us);
     }
 }
 
@@ -110,6 +137,6 @@ void account_step(struct account *account, uint32_t mote, sim_time time, int mea
     if (account->open) {
         const uint64_t takes =
             energy_tracker_us(account->ledger.profile, account->tracker, measurements, account->draws);
-        energy_charge(&account->ledger, mote, time, ENERGY_CPU, ENERGY_LOCALISATION, takes);
+        assume(account, mote, time, ENERGY_LOCALISATION, takes);
     }
 }

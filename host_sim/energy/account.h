@@ -13,6 +13,7 @@ struct account {
     uint64_t sensing_us, sample_us, frame_us; /* what work takes */
     const char *tracker;
     uint32_t draws; /* of particles in one of its steps, if it has any */
+    bool *measured; /* of each mote: what its processor does is measured */
 };
 
 /* All radios listen from time 0. `order`: as in struct energy_config. Returns 0, or -1 if there is no memory (nothing to close). */
@@ -32,6 +33,12 @@ void account_sample(struct account *account, uint32_t mote, sim_time time);
 
 /* Its processor handles a frame that it sends or has heard. */
 void account_frame(struct account *account, uint32_t mote, sim_time time, enum energy_cause cause);
+
+/* From now on mote `mote` is charged for its processor's work as it is measured, by account_work alone. */
+void account_measured(struct account *account, uint32_t mote);
+
+/* Its processor has worked so long for this cause. */
+void account_work(struct account *account, uint32_t mote, sim_time time, enum energy_cause cause, uint64_t duration_us);
 
 /* It computes a position. */
 void account_step(struct account *account, uint32_t mote, sim_time time, int measurements);

@@ -3,6 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MICROSECONDS_PER_TICK = SIM_TIME_PER_S / MH_TICKS_PER_S };
+
+sim_time host_alarm_time(const struct local_clock *clock, sim_time now, mh_tick tick)
+{
+    const int64_t time = local_clock_time_of(clock, now, tick);
+    return time < (int64_t)now ? now : (sim_time)time;
+}
+
+double host_clock_error_s(mh_tick shown, uint8_t fraction, sim_time now)
+{
+    const sim_time ticks = now / MICROSECONDS_PER_TICK;
+    const double shown_ms = mh_ticks_between((mh_tick)ticks, shown) + fraction / 256.0;
+    return (shown_ms * MICROSECONDS_PER_TICK - (double)(now - ticks * MICROSECONDS_PER_TICK)) / SIM_TIME_PER_S;
+}
+
 struct host_action *host_actions_add(struct host_actions *actions)
 {
     if (actions->count == actions->capacity) {

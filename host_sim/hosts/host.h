@@ -23,6 +23,7 @@ struct host_mote {
     const void *protocol_config;
     struct local_clock clock;
     const struct mh_clock_config *sync; /* NULL: keeps no network time */
+    const char *board;                  /* that it lives on (boards.h); NULL: none */
 };
 
 enum host_event_kind {
@@ -53,9 +54,9 @@ struct host_event {
     } as;
 };
 
-enum host_action_kind { HOST_TRANSMIT, HOST_REPORT, HOST_SLEEP, HOST_CLOCK, HOST_SENSE };
+enum host_action_kind { HOST_TRANSMIT, HOST_REPORT, HOST_SLEEP, HOST_CLOCK, HOST_SENSE, HOST_WORK };
 
-/* What a mote did; as in struct mh_port but for HOST_CLOCK. */
+/* What a mote did; as in struct mh_port but for HOST_CLOCK, and HOST_WORK: what an event has cost a mote on a board, told after all else of it. */
 struct host_action {
     sim_time time;
     enum host_action_kind kind;
@@ -70,6 +71,11 @@ struct host_action {
         /* what the mote takes for the network's time, as exactly as it knows it in the middle of its tick, minus simulated time; NaN where it
          * does not know it yet */
         double clock_error_s;
+        struct {
+            uint32_t duration_us; /* at its processor's rate */
+            uint8_t message;      /* enum mh_message_kind of the frame heard, or else sent; MH_MESSAGE_KINDS: none */
+            bool localises;       /* a sample, or a position */
+        } work;
     } as;
 };
 
@@ -79,12 +85,15 @@ struct host_actions {
     size_t count, capacity;
 };
 
+struct board_results;
+
 /* Totals of a host's motes, those of motes that have started anew included. */
 struct host_totals {
     uint64_t events; /* starts, stops, readings, frames heard, fates of frames, probes and alarms */
     struct mh_mote_counters motes;
     struct mh_head_counters heads;
     struct mh_protocol_counters protocols;
+    struct board_results *boards; /* gets those of motes on boards; NULL: nobody asks */
 };
 
 struct host {
@@ -109,11 +118,22 @@ struct host {
  * broadcast finds them in few pages of memory. `order` outlives the host. Returns 0, or -1 if there is no memory. */
 int host_in_process(struct host *host, uint32_t count, const uint32_t *order, const struct mh_protocol *protocol);
 
+struct emulation;
+
 /* Where the motes of a run live, if not in this process: open() makes their host, as host_in_process does. `seed` is the run's. */
 struct host_provider {
     void *context;
-    int (*open)(void *context, struct host *host, uint32_t count, const uint32_t *order, uint64_t seed);
+    int (*open)(void *context, struct host *host, uint32_t count, const uint32_t *order,
+                const struct mh_protocol *protocol, uint64_t seed);
+    const struct emulation *emulation; /* motes that live on boards, and how these did, both NULL: none */
+    struct board_results *boards;
 };
+
+/* When a mote's clock will show `tick`: not before `now`. */
+sim_time host_alarm_time(const struct local_clock *clock, sim_time now, mh_tick tick);
+
+/* As in HOST_CLOCK: a mote takes the time `now` for tick `shown` and 1/256 of it. */
+double host_clock_error_s(mh_tick shown, uint8_t fraction, sim_time now);
 
 /* One more action, to be filled in; NULL if there is no memory. */
 struct host_action *host_actions_add(struct host_actions *actions);

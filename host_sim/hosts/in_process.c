@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PREFETCH_AHEAD = 6, MICROSECONDS_PER_TICK = SIM_TIME_PER_S / MH_TICKS_PER_S };
+enum { PREFETCH_AHEAD = 6 };
 
 /* Aligned for whatever a tracker or a protocol keeps. */
 union any {
@@ -117,8 +117,7 @@ static void queue_alarm(struct slot *slot)
 static void set_alarm(void *context, mh_tick tick)
 {
     struct slot *slot = context;
-    const int64_t time = local_clock_time_of(&slot->clock, slot->host->now, tick);
-    slot->alarm = time < (int64_t)slot->host->now ? slot->host->now : (sim_time)time;
+    slot->alarm = host_alarm_time(&slot->clock, slot->host->now, tick);
     if (slot->alarm < slot->alarm_queued) {
         queue_alarm(slot);
     }
@@ -192,9 +191,7 @@ static double clock_error_s(const struct slot *slot)
         }
         shown = mh_clock_network(slot->network_clock, shown, &fraction);
     }
-    const sim_time now = slot->host->now, ticks = now / MICROSECONDS_PER_TICK;
-    const double shown_ms = mh_ticks_between((mh_tick)ticks, shown) + fraction / 256.0;
-    return (shown_ms * MICROSECONDS_PER_TICK - (double)(now - ticks * MICROSECONDS_PER_TICK)) / SIM_TIME_PER_S;
+    return host_clock_error_s(shown, fraction, slot->host->now);
 }
 
 static void answer_probe(struct slot *slot)

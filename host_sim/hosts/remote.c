@@ -79,6 +79,10 @@ static int on_totals(void *context, unsigned worker, const motehound_worker_tota
     struct host_totals *totals = remote->totals;
     (void)worker;
     totals->events += (uint64_t)message->events;
+    for (int32_t i = 0; totals->boards && i < message->board_count; i++) {
+        const struct board_result result = worker_board_read(&message->boards[i]);
+        board_results_add(totals->boards, &result);
+    }
     return add_counters(&totals->motes, sizeof totals->motes, message->motes, message->mote_counters, error,
                         error_size) != 0 ||
                    add_counters(&totals->heads, sizeof totals->heads, message->heads, message->head_counters, error,

@@ -1,5 +1,6 @@
 #include "hosts/worker.h"
 
+#include "hosts/boards.h"
 #include "roster.h"
 #include "scenario/text.h"
 
@@ -20,6 +21,7 @@ struct motes {
     struct scenario scenario;
     struct mote_kit kit;
     struct host host;
+    struct emulation boards; /* of these motes, in the order in which they were added */
     uint32_t count, added;
     uint32_t *numbers; /* of the motes here, in the run ... */
     uint32_t *order;   /* ... and their places in the host's memory */
@@ -56,7 +58,8 @@ static void forget_motes(struct motes *motes)
     *motes = (struct motes){0};
 }
 
-static int make_motes(struct motes *motes, const motehound_worker_assign_t *message, char *error, size_t error_size)
+static int make_motes(struct motes *motes, const motehound_worker_assign_t *message, const char *images, char *error,
+                      size_t error_size)
 {
     const char *scenario = message->scenario;
     const uint32_t count = (uint32_t)message->count;
@@ -82,7 +85,7 @@ static int make_motes(struct motes *motes, const motehound_worker_assign_t *mess
         motes->order[i] = i;
     }
     if (!motes->numbers || !motes->order ||
-        host_in_process(&motes->host, count, motes->order, motes->kit.protocol.protocol) != 0) {
+        host_boards(&motes->host, count, motes->order, motes->kit.protocol.protocol, images) != 0) {
         return fail(error, error_size, "out of memory for %u nodes", (unsigned)count);
     }
     return 0;
@@ -116,6 +119,14 @@ static int add_mote(struct motes *motes, const motehound_worker_mote_t *message)
     struct host_mote what =
         mote_kit_mote(&motes->kit, (mh_node_id)message->id,
                       (struct mh_place){message->x_mm, message->y_mm, message->z_mm}, message->is_sink != 0);
+    if (message->board[0] != '\0') {
+        const size_t at = motes->boards.count;
+        if (at == BOARDS_MAX || !board_kind_find(message->board)) {
+            return -1;
+        }
+        snprintf(motes->boards.list[at].board, BOARD_NAME_MAX, "%s", message->board);
+        what.board = motes->boards.list[motes->boards.count++].board;
+    }
     what.clock =
         (struct local_clock){message->offset_us, message->drift_ppm, message->wander_ppm, message->wander_phase};
     motes->here[mote] = motes->added;
@@ -226,7 +237,8 @@ static bool is_next(struct worker *worker, int64_t session, int64_t number, bool
 static void on_assign(struct worker *worker, const motehound_worker_assign_t *message)
 {
     worker->assigned = true;
-    if (message->count < 0 || make_motes(&worker->motes, message, worker->error, sizeof worker->error) != 0) {
+    if (message->count < 0 ||
+        make_motes(&worker->motes, message, worker->config->images, worker->error, sizeof worker->error) != 0) {
         answer_error(worker, message->number);
     } else {
         answer_done(worker, message->number);
@@ -284,7 +296,9 @@ static void on_count(struct worker *worker, const motehound_worker_count_t *mess
         PROTOCOL = sizeof(struct mh_protocol_counters) / sizeof(uint32_t)
     };
     struct host *host = &worker->motes.host;
-    struct host_totals totals = {0};
+    struct board_results boards = {.count = 0};
+    motehound_worker_board_t board_messages[BOARDS_MAX];
+    struct host_totals totals = {.boards = &boards};
     int64_t motes[MOTE], heads[HEAD], protocols[PROTOCOL];
     size_t size;
     if (host->count(host->state, &totals, worker->error, sizeof worker->error) != 0) {
@@ -295,8 +309,11 @@ static void on_count(struct worker *worker, const motehound_worker_count_t *mess
     widen(heads, &totals.heads, HEAD);
     widen(protocols, &totals.protocols, PROTOCOL);
     const motehound_worker_totals_t reply = {
-        worker->session, worker->number, message->number, (int64_t)totals.events, MOTE, motes, HEAD,
-        heads,           PROTOCOL,       protocols};
+        worker->session, worker->number, message->number, (int64_t)totals.events, MOTE,          motes, HEAD,
+        heads,           PROTOCOL,       protocols,       (int32_t)boards.count,  board_messages};
+    for (size_t i = 0; i < boards.count; i++) {
+        board_messages[i] = worker_board_message(&boards.list[i]);
+    }
     uint8_t *bytes = worker_encode_totals(&reply, &size);
     answer(worker, message->number, WORKER_TOTALS, bytes, size);
 }

@@ -11,6 +11,7 @@ struct worker_config {
     const char *version; /* of this simulator */
     int64_t session;     /* to join; 0: the first that calls */
     int64_t worker;      /* its number; 0: a random one */
+    const char *images;  /* folder of images of boards */
     int lifeline;        /* a descriptor that comes to its end when the run does; -1: none */
     double drop_share;   /* of the messages is dropped on purpose */
     const volatile sig_atomic_t *stop;

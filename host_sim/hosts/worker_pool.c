@@ -96,6 +96,8 @@ static int spawn(struct worker_pool *pool, struct member *member)
                            key,
                            (char *)"--drop-share",
                            drop,
+                           (char *)"--images",
+                           (char *)config->images,
                            NULL};
     if (pipe(ends) != 0) {
         return give_up(pool, "--workers: no pipe to a worker");

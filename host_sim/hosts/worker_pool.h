@@ -11,6 +11,7 @@ struct worker_pool_config {
     const char *url;     /* of the bus */
     const char *version; /* of this simulator */
     const char *program; /* that is started as `PROGRAM worker ...` */
+    const char *images;  /* that these find the images of boards in */
     unsigned local;      /* workers to start */
     unsigned joining;    /* workers to wait for that others start */
     bool respawn;        /* replace a worker that dies, else the run ends */

@@ -115,7 +115,8 @@ motehound_worker_mote_t worker_mote_message(uint32_t mote, const struct host_mot
                                      .offset_us = what->clock.offset_us,
                                      .drift_ppm = what->clock.drift_ppm,
                                      .wander_ppm = what->clock.wander_ppm,
-                                     .wander_phase = what->clock.wander_phase};
+                                     .wander_phase = what->clock.wander_phase,
+                                     .board = (char *)(what->board ? what->board : "")};
 }
 
 motehound_worker_event_t worker_event_message(const struct host_event *event)
@@ -259,6 +260,11 @@ motehound_worker_action_t worker_action_message(const struct host_action *action
     case HOST_CLOCK:
         message.clock_error_s = action->as.clock_error_s;
         break;
+    case HOST_WORK:
+        message.work_us = (int32_t)action->as.work.duration_us;
+        message.work_message = action->as.work.message;
+        message.work_localises = action->as.work.localises;
+        break;
     case HOST_SENSE:
         break;
     }
@@ -267,7 +273,7 @@ motehound_worker_action_t worker_action_message(const struct host_action *action
 
 int worker_action_read(const motehound_worker_action_t *message, struct host_action *action)
 {
-    if (message->kind < HOST_TRANSMIT || message->kind > HOST_SENSE || message->time_us < 0 ||
+    if (message->kind < HOST_TRANSMIT || message->kind > HOST_WORK || message->time_us < 0 ||
         message->length > MH_FRAME_MAX || (message->estimates == 1) != (message->kind == HOST_REPORT)) {
         return -1;
     }
@@ -289,8 +295,55 @@ int worker_action_read(const motehound_worker_action_t *message, struct host_act
     case HOST_CLOCK:
         action->as.clock_error_s = message->clock_error_s;
         break;
+    case HOST_WORK:
+        if (message->work_us < 0 || message->work_message < 0 || message->work_message > MH_MESSAGE_KINDS) {
+            return -1;
+        }
+        action->as.work.duration_us = (uint32_t)message->work_us;
+        action->as.work.message = (uint8_t)message->work_message;
+        action->as.work.localises = message->work_localises != 0;
+        break;
     case HOST_SENSE:
         break;
     }
     return 0;
+}
+
+motehound_worker_board_t worker_board_message(const struct board_result *result)
+{
+    return (motehound_worker_board_t){.node = (int32_t)result->node,
+                                      .board = (char *)result->board,
+                                      .image = (char *)result->image,
+                                      .fixed = result->fixed,
+                                      .events = (int64_t)result->events,
+                                      .cycles = (int64_t)result->cycles,
+                                      .cycles_max = (int64_t)result->cycles_max,
+                                      .rate_hz = result->rate_hz,
+                                      .missed = (int64_t)result->missed,
+                                      .overlapped = (int64_t)result->overlapped,
+                                      .ram = (int32_t)result->ram,
+                                      .variables = (int32_t)result->variables,
+                                      .stack = (int32_t)result->stack,
+                                      .reports_max = (int32_t)result->reports_max,
+                                      .neighbours_max = (int32_t)result->neighbours_max};
+}
+
+struct board_result worker_board_read(const motehound_worker_board_t *message)
+{
+    struct board_result result = {.node = (mh_node_id)message->node,
+                                  .fixed = message->fixed != 0,
+                                  .events = (uint64_t)message->events,
+                                  .cycles = (uint64_t)message->cycles,
+                                  .cycles_max = (uint64_t)message->cycles_max,
+                                  .rate_hz = message->rate_hz,
+                                  .missed = (uint64_t)message->missed,
+                                  .overlapped = (uint64_t)message->overlapped,
+                                  .ram = (uint32_t)message->ram,
+                                  .variables = (uint32_t)message->variables,
+                                  .stack = (uint32_t)message->stack,
+                                  .reports_max = (uint32_t)message->reports_max,
+                                  .neighbours_max = (uint32_t)message->neighbours_max};
+    snprintf(result.board, sizeof result.board, "%s", message->board);
+    snprintf(result.image, sizeof result.image, "%s", message->image);
+    return result;
 }

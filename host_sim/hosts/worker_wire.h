@@ -5,7 +5,7 @@
 
 #include "bus/layout.h"
 #include "engine/random.h"
-#include "hosts/host.h"
+#include "hosts/boards.h"
 
 #include "motehound_worker_assign_t.h"
 #include "motehound_worker_call_t.h"
@@ -91,13 +91,13 @@ const char *worker_channel(int64_t worker, enum worker_request request, char cha
 WORKER_CODEC(call, "84s")
 WORKER_CODEC(join, "88ss")
 WORKER_CODEC(assign, "888s8444444444")
-WORKER_CODEC(motes, "888[4444418888]")
+WORKER_CODEC(motes, "888[4444418888s]")
 WORKER_CODEC(window, "8888[8141[4]{1}]")
 WORKER_CODEC(count, "888")
 WORKER_CODEC(done, "8888[814418{1}{444"
                    "88888888888888888888888"
-                   "488888884444}]")
-WORKER_CODEC(totals, "8888[8][8][8]")
+                   "488888884444}421]")
+WORKER_CODEC(totals, "8888[8][8][8][4ss188888844444]")
 WORKER_CODEC(error, "88s")
 WORKER_CODEC(release, "8")
 
@@ -114,6 +114,12 @@ int worker_event_read(const motehound_worker_event_t *message, struct host_event
 /* An action. `estimate` is where the message of a report points to; it points into `action`, too. */
 motehound_worker_action_t worker_action_message(const struct host_action *action,
                                                 motehound_worker_estimate_t *estimate);
+
+/* How a board did. It points into `result`. */
+motehound_worker_board_t worker_board_message(const struct board_result *result);
+
+/* The opposite. */
+struct board_result worker_board_read(const motehound_worker_board_t *message);
 
 /* The opposite. Returns 0, or -1 if a value is outside its range. */
 int worker_action_read(const motehound_worker_action_t *message, struct host_action *action);

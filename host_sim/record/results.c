@@ -316,6 +316,24 @@ void results_pooled(struct results *results, double values[METRIC_ERRORS_COUNT])
 /* JSON has no infinity. */
 static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
+static json_t *board_summary(const struct board_result *board)
+{
+    const double mean = board->events > 0 ? (double)board->cycles / (double)board->events : 0;
+    json_t *object = json_pack("{s:I, s:s, s:s, s:s, s:I, s:f, s:I, s:f, s:I, s:I, s:I, s:I}", "node",
+                               (json_int_t)board->node, "board", board->board, "image", board->image, "arithmetic",
+                               board->fixed ? "fixed" : "float", "events", (json_int_t)board->events, "cycles_mean",
+                               mean, "cycles_max", (json_int_t)board->cycles_max, "rate_hz", board->rate_hz, "late",
+                               (json_int_t)board->missed, "overlapped", (json_int_t)board->overlapped, "reports_max",
+                               (json_int_t)board->reports_max, "neighbours_max", (json_int_t)board->neighbours_max);
+    if (object && board->ram > 0) {
+        json_object_update_new(object,
+                               json_pack("{s:I, s:I, s:I, s:I}", "ram_b", (json_int_t)board->ram, "ram_static_b",
+                                         (json_int_t)board->variables, "stack_b", (json_int_t)board->stack,
+                                         "ram_free_b", (json_int_t)board_ram_free(board)));
+    }
+    return object;
+}
+
 static json_t *summary(struct results *results, const char *version)
 {
     json_t *metrics = json_object(), *pooled = json_object();
@@ -339,6 +357,13 @@ static json_t *summary(struct results *results, const char *version)
     json_t *whole = json_pack("{s:s, s:I, s:I, s:s, s:o, s:o}", "scenario", results->scenario_name, "seed",
                               (json_int_t)results->seed, "runs", (json_int_t)results->run_count, "version", version,
                               "metrics", metrics, "pooled", pooled);
+    if (results->boards.count > 0) {
+        json_t *boards = json_array();
+        for (size_t i = 0; i < results->boards.count; i++) {
+            status |= json_array_append_new(boards, board_summary(&results->boards.list[i]));
+        }
+        status |= json_object_set_new(whole, "boards", boards);
+    }
     if (status != 0) {
         json_decref(whole);
         return NULL;

@@ -3,7 +3,8 @@
  *
  * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the
  * "mean", "std" (divisor n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics
- * over all estimates of all runs together, which is also the "mean" of a metric that is defined over runs (metrics.h). track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
+ * over all estimates of all runs together, which is also the "mean" of a metric that is defined over runs (metrics.h). Where motes lived on boards there is "boards", a list with one object a board: "node", "board", "image",
+ * "arithmetic", "events", "cycles_mean", "cycles_max", "rate_hz", "late", "overlapped", "reports_max", "neighbours_max", and where it has its own memory "ram_b", "ram_static_b", "stack_b", "ram_free_b". track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
  * coordinate, sqrt((cov_xx + cov_yy) / 2); sink_x_m, sink_y_m are what the sink of clusters had of it at that instant; number is that
  * of the true target that it is compared with, extent_m that of a group and of_0 ... the identifiers of its targets. Fields that do not apply are empty. nodes.csv: where the motes of the first
  * run stand. local.csv: of fixed clusters, one row for whatever each of them had by itself when it told the sink. watch.csv: one row for
@@ -12,6 +13,7 @@
 #ifndef MOTEHOUND_SIM_RESULTS_H
 #define MOTEHOUND_SIM_RESULTS_H
 
+#include "hosts/boards.h"
 #include "record/metrics.h"
 #include "record/output.h"
 
@@ -32,6 +34,7 @@ struct results {
     motehound_track_t last; /* estimate of the run added last; all zero where there was none */
     struct samples metrics[METRIC_COUNT];
     struct errors pooled;
+    struct board_results boards; /* of motes that lived on boards: whoever runs them adds to it */
 };
 
 /* Begin in folder `out`; `scenario` is the one that is simulated, or NULL for a recording. It and the name stay valid

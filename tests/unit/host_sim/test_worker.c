@@ -125,13 +125,14 @@ static char scenario[] = "network: {protocol: collection}\ntracker: {name: luo}\
 
 static motehound_worker_event_t starts[3];
 static int32_t motes[3] = {100, 7, 50000};
+static char none[] = "";
 
 /* Joined, with three motes, the first of them the head; up. */
 static void bring_up(void)
 {
-    motehound_worker_mote_t three[3] = {{.mote = motes[0], .id = 9, .is_sink = 1},
-                                        {.mote = motes[1], .id = 1, .x_mm = 5000},
-                                        {.mote = motes[2], .id = 2, .y_mm = 5000}};
+    motehound_worker_mote_t three[3] = {{.mote = motes[0], .id = 9, .is_sink = 1, .board = none},
+                                        {.mote = motes[1], .id = 1, .x_mm = 5000, .board = none},
+                                        {.mote = motes[2], .id = 2, .y_mm = 5000, .board = none}};
     call(SESSION);
     TEST_ASSERT_TRUE(heard.joins == 1 && heard.session == SESSION);
     ASK(WORKER_ASSIGN, assign, .number = 1, .scenario = scenario, .count = 3);
@@ -345,6 +346,7 @@ static void events_and_actions_come_out_as_they_went_in(void)
         {3, HOST_SLEEP, 4, {.may_sleep = true}},
         {4, HOST_CLOCK, 5, {.clock_error_s = -1e-6}},
         {5, HOST_SENSE, 6, {.may_sleep = false}},
+        {6, HOST_WORK, 7, {.work = {123456, MH_MESSAGE_ASK, true}}},
     };
     enum { ACTIONS = sizeof actions / sizeof actions[0] };
     motehound_worker_action_t done[ACTIONS];
@@ -380,10 +382,61 @@ static void events_and_actions_come_out_as_they_went_in(void)
             break;
         case HOST_SENSE:
             break;
+        case HOST_WORK:
+            TEST_ASSERT_TRUE(action.as.work.duration_us == 123456 && action.as.work.message == MH_MESSAGE_ASK &&
+                             action.as.work.localises);
+            break;
         }
     }
     motehound_worker_done_t_decode_cleanup(&back);
     free(bytes);
+}
+
+static void boards_come_out_as_they_went_in(void)
+{
+    const struct board_result result = {.node = 17,
+                                        .board = "atmega128",
+                                        .image = "images/atmega128/sensor_node",
+                                        .fixed = true,
+                                        .events = 5,
+                                        .cycles = 1ull << 40,
+                                        .cycles_max = 1ull << 33,
+                                        .rate_hz = 7372800,
+                                        .missed = 1,
+                                        .overlapped = 2,
+                                        .ram = 4096,
+                                        .variables = 1000,
+                                        .stack = 500,
+                                        .reports_max = 24,
+                                        .neighbours_max = 8};
+    motehound_worker_board_t board = worker_board_message(&result);
+    const motehound_worker_totals_t totals = {.board_count = 1, .boards = &board};
+    motehound_worker_totals_t back;
+    size_t size;
+    uint8_t *bytes = worker_encode_totals(&totals, &size);
+    const lcm_recv_buf_t buffer = {bytes, (uint32_t)size, 0, NULL};
+    TEST_ASSERT_TRUE(worker_decode_totals(&link, &buffer, &back));
+    TEST_ASSERT_EQUAL_INT(1, back.board_count);
+    const struct board_result got = worker_board_read(&back.boards[0]);
+    TEST_ASSERT_EQUAL_STRING(result.board, got.board);
+    TEST_ASSERT_EQUAL_STRING(result.image, got.image);
+    TEST_ASSERT_TRUE(got.node == 17 && got.fixed && got.events == 5 && got.cycles == result.cycles &&
+                     got.cycles_max == result.cycles_max && got.rate_hz == 7372800 && got.missed == 1 &&
+                     got.overlapped == 2 && got.reports_max == 24 && got.neighbours_max == 8);
+    TEST_ASSERT_EQUAL_UINT32(2596, board_ram_free(&got));
+    motehound_worker_totals_t_decode_cleanup(&back);
+    free(bytes);
+
+    /* runs of one board are added up, others stand beside */
+    struct board_results all = {.count = 0};
+    struct board_result other = result;
+    other.node = 18;
+    board_results_add(&all, &result);
+    board_results_add(&all, &other);
+    board_results_add(&all, &result);
+    TEST_ASSERT_EQUAL_UINT(2, all.count);
+    TEST_ASSERT_TRUE(all.list[0].events == 10 && all.list[0].cycles == 2 * result.cycles &&
+                     all.list[0].cycles_max == result.cycles_max && all.list[1].events == 5);
 }
 
 static void a_layout_is_met_exactly(void)
@@ -418,6 +471,7 @@ int main(void)
     RUN_TEST(motes_of_others_are_an_error);
     RUN_TEST(spoilt_messages_do_no_harm);
     RUN_TEST(events_and_actions_come_out_as_they_went_in);
+    RUN_TEST(boards_come_out_as_they_went_in);
     RUN_TEST(a_layout_is_met_exactly);
     port_exit(UNITY_END() > 0);
 }
