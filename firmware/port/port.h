@@ -62,7 +62,7 @@ void port_reset(void);
 #define PORT_BAUD 57600ul
 #endif
 
-/* Switch it on: from now bytes are received into a ring of PORT_RING bytes by interrupt. What finds it full is lost. */
+/* Switch it on: from now bytes are received into a ring of PORT_RING bytes by interrupt. What finds it full waits in the UART, which may lose it. */
 void port_uart_begin(void);
 
 /* The oldest byte received that was not taken yet, or -1 if there is none. */

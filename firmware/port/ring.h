@@ -18,9 +18,11 @@ static struct {
 
 static inline uint8_t ring_count(void) { return (uint8_t)(ring.written - ring.read); }
 
+static inline uint8_t ring_is_full(void) { return ring_count() == PORT_RING; }
+
 static inline void ring_write(uint8_t byte)
 {
-    if (ring_count() < PORT_RING) {
+    if (!ring_is_full()) {
         ring.bytes[ring.written % PORT_RING] = byte;
         ring.written = (uint8_t)(ring.written + 1);
     }

@@ -50,7 +50,8 @@ static void tell_waiting(unsigned missing)
 int workers_open(struct workers *workers, const struct worker_pool_config *config, const struct scenario *scenario,
                  char *error, size_t error_size)
 {
-    *workers = (struct workers){.provider = {workers, open_host}, .scenario = scenario_text(scenario)};
+    *workers =
+        (struct workers){.provider = {.context = workers, .open = open_host}, .scenario = scenario_text(scenario)};
     if (!workers->scenario) {
         return fail(error, error_size, "%s: cannot be told to workers", scenario->name);
     }

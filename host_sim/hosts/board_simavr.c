@@ -154,6 +154,7 @@ int board_simavr_open(struct board_line *line, const struct board_kind *kind, co
     board->avr->sleep = sleep_at_once;
     board->avr->log = LOG_ERROR;
     connect(board);
+    free(firmware.flash);
     *line = (struct board_line){board, put, get, rest, close_simavr};
     return 0;
 }

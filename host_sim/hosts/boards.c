@@ -11,14 +11,20 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MESSAGE_MAX = 2 * MH_LINE_TO_BOARD_MAX + 2, READ_MAX = 512, MESSAGES_PER_EVENT = 1000, IDENTIFY_TRIES = 100 };
+enum {
+    MESSAGE_MAX = 2 * MH_LINE_TO_BOARD_MAX + 2,
+    READ_MAX = 512,
+    MESSAGES_PER_EVENT = 1000,
+    IDENTIFY_TRIES = 100,
+    TEXT_MAX = 40
+};
 
 /* How long a board may be silent, and how long before it is asked again who it is: it may have been starting. */
 static const double patience_s = 20, start_s = 0.1;
 
 /* What an event has led to so far. */
 struct outcome {
-    bool done, identified, counted, reported;
+    bool done, reported;
     enum mh_message_kind sent;
     struct mh_line_done answer;
 };
@@ -35,8 +41,9 @@ struct board {
     struct mh_line_receiver receiver;
     uint8_t message[MH_LINE_FROM_BOARD_MAX], read[READ_MAX];
     size_t read_at, read_count;
-    struct mh_line_identity identity; /* without its texts */
-    struct host_totals counted;       /* as last told */
+    struct mh_line_identity identity;
+    char texts[4][TEXT_MAX];    /* of the identity */
+    struct host_totals counted; /* as last told */
     struct board_result result;
 };
 
@@ -234,6 +241,13 @@ static int take_fault(struct boards *boards, const struct board *board, struct m
     return trouble(boards, board, text);
 }
 
+/* A text of a message, which outlives the message. */
+static void keep(const char **text, char copy[TEXT_MAX])
+{
+    snprintf(copy, TEXT_MAX, "%s", *text);
+    *text = copy;
+}
+
 /* One message of the board: what its mote does goes to the actions, what else there is to the outcome. `starts`: it runs free until it has been asked who it
  * is, and what it does until then is of no account. */
 static int take(struct boards *boards, struct board *board, bool starts, struct outcome *outcome)
@@ -249,7 +263,12 @@ static int take(struct boards *boards, struct board *board, bool starts, struct 
     case MH_LINE_IDENTITY:
         board->identifies = true;
         mh_line_identity(&fields, &board->identity);
-        outcome->identified = true;
+        if (mh_line_complete(&fields)) {
+            keep(&board->identity.board, board->texts[0]);
+            keep(&board->identity.protocol, board->texts[1]);
+            keep(&board->identity.tracker, board->texts[2]);
+            keep(&board->identity.library, board->texts[3]);
+        }
         break;
     case MH_LINE_TRANSMIT:
         return take_frame(boards, board, &fields, outcome);
@@ -289,13 +308,9 @@ static int take(struct boards *boards, struct board *board, bool starts, struct 
         mh_line_counters(&fields, &board->counted.motes, &board->counted.heads, &board->counted.protocols);
         break;
     case MH_LINE_DONE:
-        if (board->identifies && !outcome->identified) {
-            board->identifies = false; /* of an IDENTIFY that was given up */
-            break;
-        }
-        board->identifies = false;
         mh_line_done(&fields, &outcome->answer);
-        outcome->done = true;
+        outcome->done = board->identifies == starts; /* else of an IDENTIFY that was given up */
+        board->identifies = false;
         break;
     case MH_LINE_FAULT:
         return take_fault(boards, board, &fields);
@@ -547,7 +562,7 @@ static int open_board(struct boards *boards, struct board *board)
     board->open = true;
     mh_line_receiver_init(&board->receiver, board->message, sizeof board->message);
     struct outcome outcome = {.done = false};
-    for (int i = 0; i < IDENTIFY_TRIES && !(outcome.done && outcome.identified); i++) {
+    for (int i = 0; i < IDENTIFY_TRIES && !outcome.done; i++) {
         struct message message;
         begin(&message, MH_LINE_IDENTIFY);
         if (ask(boards, board, &message, start_s, &outcome) != 0) {

@@ -11,11 +11,14 @@
 #define SYST_RVR REGISTER(0xE000E014u)                        /* where it begins anew, */
 #define SYST_CVR REGISTER(0xE000E018u)                        /* where it is */
 #define NVIC_ISER(n) REGISTER(0xE000E100u + 4u * ((n) / 32u)) /* enables interrupts, a bit each */
+#define NVIC_ICER(n) REGISTER(0xE000E180u + 4u * ((n) / 32u)) /* and disables them */
 #define ICSR REGISTER(0xE000ED04u)                            /* bit 26: SysTick's exception waits */
 #define AIRCR REGISTER(0xE000ED0Cu)                           /* reset */
 #define CPACR REGISTER(0xE000ED88u) /* access to the coprocessors, of which 10 and 11 are the FPU */
 
 static inline void enable_interrupt(uint32_t number) { NVIC_ISER(number) = 1u << number % 32u; }
+
+static inline void disable_interrupt(uint32_t number) { NVIC_ICER(number) = 1u << number % 32u; }
 
 static inline void interrupts_off(void) { __asm__ volatile("cpsid i" ::: "memory"); }
 static inline void interrupts_on(void) { __asm__ volatile("cpsie i" ::: "memory"); }

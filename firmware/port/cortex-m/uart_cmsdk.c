@@ -23,12 +23,22 @@ void port_uart_begin(void)
 void uart_interrupt(void)
 {
     CLEAR = CLEAR_RX;
-    while (STATE & STATE_RX_FULL) {
+    while ((STATE & STATE_RX_FULL) && !ring_is_full()) {
         ring_write((uint8_t)DATA);
     }
 }
 
-int port_uart_get(void) { return ring_read(); }
+/* The interrupt comes with each byte; one that found the ring full still waits in the UART. */
+int port_uart_get(void)
+{
+    interrupts_off();
+    int byte = ring_read();
+    if (byte < 0 && (STATE & STATE_RX_FULL)) {
+        byte = (uint8_t)DATA;
+    }
+    interrupts_on();
+    return byte;
+}
 
 void port_uart_put(uint8_t byte)
 {

@@ -31,13 +31,21 @@ void port_uart_begin(void)
 
 void uart_interrupt(void)
 {
-    while (RECEIVED) {
+    while (RECEIVED && !ring_is_full()) {
         RECEIVED = 0;
         ring_write((uint8_t)RX_DATA);
     }
+    if (RECEIVED) { /* it waits in the UART */
+        disable_interrupt(UART_INTERRUPT);
+    }
 }
 
-int port_uart_get(void) { return ring_read(); }
+int port_uart_get(void)
+{
+    const int byte = ring_read();
+    enable_interrupt(UART_INTERRUPT);
+    return byte;
+}
 
 void port_uart_put(uint8_t byte)
 {

@@ -35,13 +35,19 @@ void port_uart_begin(void)
 void uart_interrupt(void)
 {
     const uint32_t source = CLAIM;
-    while (STATUS & STATUS_RECEIVED) {
+    while ((STATUS & STATUS_RECEIVED) && !ring_is_full()) {
         ring_write(DATA);
     }
+    INTERRUPTS = (STATUS & STATUS_RECEIVED) == 0; /* else it waits in the UART */
     CLAIM = source;
 }
 
-int port_uart_get(void) { return ring_read(); }
+int port_uart_get(void)
+{
+    const int byte = ring_read();
+    INTERRUPTS = 1;
+    return byte;
+}
 
 void port_uart_put(uint8_t byte)
 {
