@@ -14,8 +14,13 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   model/puff
   model/time_window
   mote/head
+  mote/line
   mote/mote
   mote/mote_prince
+  mote/settings
+  mote/settings_acoustic
+  mote/settings_prince
+  mote/settings_trackers
   protocol/clock
   protocol/cluster
   protocol/cluster_head
@@ -54,6 +59,7 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_geometry
   test_head
   test_least_squares
+  test_line
   test_link
   test_luo
   test_mote

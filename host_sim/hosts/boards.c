@@ -3,6 +3,7 @@
 #include "frame_kinds.h"
 #include "motehound/prince.h"
 #include "motehound/settings.h"
+#include "reals.h"
 #include "scenario/text.h"
 
 #include <math.h>
@@ -378,15 +379,18 @@ struct named_settings {
 static const struct named_settings protocols[] = {{"direct", mh_settings_direct},
                                                   {"collection", mh_settings_collection},
                                                   {"cluster", mh_settings_cluster},
+                                                  {"prince", mh_settings_prince},
 #if !MH_REAL_FIXED
                                                   {"token", mh_settings_token},
-                                                  {"prince", mh_settings_prince},
 #endif
                                                   {NULL, NULL}};
 
 static const struct named_settings trackers[] = {{"luo", mh_settings_luo},
                                                  {"pftl", mh_settings_pftl},
                                                  {"centroid", mh_settings_centroid},
+                                                 {"acoustic", mh_settings_acoustic},
+                                                 {"dm", mh_settings_acoustic},
+                                                 {"ml", mh_settings_acoustic},
 #if !MH_REAL_FIXED
                                                  {"range", mh_settings_range},
                                                  {"diffusion", mh_settings_diffusion},
@@ -394,9 +398,6 @@ static const struct named_settings trackers[] = {{"luo", mh_settings_luo},
                                                  {"gas_small", mh_settings_gas},
                                                  {"gas_ekf", mh_settings_gas},
                                                  {"gas_ukf", mh_settings_gas},
-                                                 {"acoustic", mh_settings_acoustic},
-                                                 {"dm", mh_settings_acoustic},
-                                                 {"ml", mh_settings_acoustic},
 #endif
                                                  {NULL, NULL}};
 
@@ -472,17 +473,16 @@ static int check_mote(struct boards *boards, const struct board *board)
         snprintf(text, sizeof text, "cannot be told the configuration of the tracker %s", what->head->tracker->name);
         return trouble(boards, board, text);
     }
-#if !MH_REAL_FIXED
     const struct mh_prince_config *prince = what->protocol == &mh_protocol_prince ? what->protocol_config : NULL;
     for (uint8_t i = 0; prince && i < prince->entry_count; i++) {
-        if (mh_place_within(&what->place, &prince->entries[i].place, (uint32_t)(1000 * prince->radio_range_m))) {
+        if (mh_place_within(&what->place, &prince->entries[i].place,
+                            (uint32_t)(1000 * number_of(prince->radio_range_m)))) {
             return trouble(
                 boards, board,
                 "cannot be told that a target begins near it: choose a node farther off, or protocol.entries "
                 "false");
         }
     }
-#endif
     return 0;
 }
 

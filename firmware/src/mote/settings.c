@@ -3,7 +3,6 @@
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
 #include "motehound/direct.h"
-#include "motehound/token.h"
 
 void mh_settings_mote(struct mh_line_fields *fields, struct mh_mote_config *config)
 {
@@ -90,22 +89,4 @@ void mh_settings_cluster(struct mh_line_fields *fields, void *config)
     mh_line_u32(fields, &cluster->watch_period);
     mh_line_u32(fields, &cluster->hello_period);
     mh_line_bool(fields, &cluster->faces);
-}
-
-void mh_settings_token(struct mh_line_fields *fields, void *config)
-{
-    struct mh_token_config *token = config;
-    link(fields, &token->link);
-    mh_line_u32(fields, &token->sink);
-    mh_line_place(fields, &token->sink_place);
-    mh_line_u32(fields, &token->start);
-    mh_line_place(fields, &token->start_place);
-    mh_line_u32(fields, &token->range_mm);
-    mh_line_u32(fields, &token->interval);
-    mh_line_u32(fields, &token->window);
-    mh_line_u32(fields, &token->hello_period);
-    mh_line_u8(fields, &token->calm);
-    mh_line_u8(fields, &token->heads_max);
-    mh_line_u8(fields, &token->patience);
-    mh_line_bool(fields, &token->faces);
 }

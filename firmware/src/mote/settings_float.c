@@ -1,8 +1,9 @@
-/* Trackers that need MH_REAL=float. */
+/* Protocols and trackers that need MH_REAL=float. */
 #include "motehound/diffusion.h"
 #include "motehound/gas.h"
 #include "motehound/range.h"
 #include "motehound/settings.h"
+#include "motehound/token.h"
 
 void mh_settings_range(struct mh_line_fields *fields, void *config)
 {
@@ -50,4 +51,23 @@ void mh_settings_gas(struct mh_line_fields *fields, void *config)
     mh_line_real(fields, &gas->ukf.alpha);
     mh_line_real(fields, &gas->ukf.beta);
     mh_line_real(fields, &gas->ukf.kappa);
+}
+
+void mh_settings_token(struct mh_line_fields *fields, void *config)
+{
+    struct mh_token_config *token = config;
+    mh_line_u8(fields, &token->link.attempts);
+    mh_line_u32(fields, &token->link.backoff);
+    mh_line_u32(fields, &token->sink);
+    mh_line_place(fields, &token->sink_place);
+    mh_line_u32(fields, &token->start);
+    mh_line_place(fields, &token->start_place);
+    mh_line_u32(fields, &token->range_mm);
+    mh_line_u32(fields, &token->interval);
+    mh_line_u32(fields, &token->window);
+    mh_line_u32(fields, &token->hello_period);
+    mh_line_u8(fields, &token->calm);
+    mh_line_u8(fields, &token->heads_max);
+    mh_line_u8(fields, &token->patience);
+    mh_line_bool(fields, &token->faces);
 }
