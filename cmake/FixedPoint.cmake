@@ -3,8 +3,10 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   base/geometry
   base/real_fixed
   base/share
+  estimate/constant_velocity
   estimate/decomposition
   estimate/followed
+  estimate/kalman_fixed
   estimate/least_squares
   estimate/node_class
   estimate/particles
@@ -58,6 +60,8 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_geographic_collection
   test_geometry
   test_head
+  test_kalman
+  test_kalman_fixed
   test_least_squares
   test_line
   test_link

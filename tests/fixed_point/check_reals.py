@@ -57,8 +57,8 @@ class Reader:
         self.place, self.fields, self.found = Place(), {}, set()
 
     def say(self, node, what):
-        # what mh_real is made of takes it for an integer
-        if not any(re.search(r"(^|/)(real(_fixed)?|share)\.[ch]$", file or "") for file in (node["_file"], node["_spelled"])):
+        # what mh_real is made of, and what has formats of its own, takes it for an integer
+        if not any(re.search(r"(^|/)(real|\w+_fixed|share)\.[ch]$", file or "") for file in (node["_file"], node["_spelled"])):
             self.found.add("%s:%d: %s" % (node["_file"], node["_line"], what))
 
     def mark(self, node):

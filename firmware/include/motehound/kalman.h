@@ -10,7 +10,16 @@
  * predict, 8 MH_KALMAN_STATES_MAX and a copy of it in update, and a few registers.
  *
  * States that never change but are to be learned (a sensor's bias) come after those that move: with P = U D U' the time update leaves
- * their factors alone, but for the rows of U that tie them to the moving ones, which become F times themselves. */
+ * their factors alone, but for the rows of U that tie them to the moving ones, which become F times themselves.
+ *
+ * Scaling and overflow. In fixed point (MH_REAL=fixed) states, F, h, innovations and U are Q15.16; P, Q and R go in and P comes out as Q15.16 too. D is kept in 28 bits with one
+ * exponent for all of it, so it has no smallest variance of its own and no error adds up; sums have at least 2 guard bits; divisors are reciprocals of 30
+ * bits; all is rounded to nearest. Good for variances up to 32767 (a standard deviation of 181 m), for R from 1.5e-5, and for variances of
+ * one filter that lie within 2^22 of each other (standard deviations of 1 to 2000), where states are within 0.5 % of their standard deviation of what
+ * infinite precision gives. Further apart: mh_kalman_init refuses (MH_ERR_RANGE); later, what has become smaller than 2^-22 of the largest of D counts as that,
+ * so that the filter is more cautious than it might be, never bolder. A prior of 1e6 is not a number there: MH_ERR_NOT_FINITE. An element of U above 32767, or a state,
+ * is refused with the filter as it was. P, Q and R may be in any one unit, as only their ratios matter but to a gate (whose sigmas are then in the root of
+ * that unit): in 1/256 m2 they have 24 fractional bits. Error analysis: docs/fixed_point.md. */
 #ifndef MOTEHOUND_KALMAN_H
 #define MOTEHOUND_KALMAN_H
 
@@ -20,9 +29,12 @@
 #include "motehound/status.h"
 
 struct mh_kalman {
-    uint8_t n;                       /* states, 1 to MH_KALMAN_STATES_MAX */
-    uint8_t moving;                  /* the first of them, which the time update moves, at most MH_KALMAN_MOVING_MAX */
-    mh_real x[MH_KALMAN_STATES_MAX]; /* the estimate; its owner may read it, and shift it */
+    uint8_t n;      /* states, 1 to MH_KALMAN_STATES_MAX */
+    uint8_t moving; /* the first of them, which the time update moves, at most MH_KALMAN_MOVING_MAX */
+#if MH_REAL_FIXED
+    int8_t exponent; /* D is in units of 2^-(16 + exponent) */
+#endif
+    mh_real x[MH_KALMAN_STATES_MAX];                  /* the estimate; its owner may read it, and shift it */
     mh_real ud[MH_PACKED_SIZE(MH_KALMAN_STATES_MAX)]; /* packed: D on the diagonal, U above it */
 };
 
@@ -37,7 +49,7 @@ struct mh_gate {
 };
 
 /* Begin with n moving states at x, with covariance P (packed). Errors: MH_ERR_ARGUMENT (n not 1 to MH_KALMAN_MOVING_MAX), MH_ERR_NOT_FINITE, MH_ERR_SINGULAR (P is not
- * positive definite to the precision of mh_real). */
+ * positive definite to the precision of mh_real); in fixed point MH_ERR_RANGE (a variance below 2^-22 of the largest). */
 enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real *x, const mh_real *P);
 
 /* One more state, that does not move and that nothing is known of but its mean and variance. Errors: MH_ERR_CAPACITY (there are
@@ -48,13 +60,13 @@ enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real 
  * variance is lost in the rounding of a larger one keeps 2^-21 of that one. Leading zeros of the rows of F cost nothing: about
  * n (n + 1) (2 n + 10) / 6 multiplications for an upper triangular F, about n^2 (n + 4) for a full one; n divisions. With m states that do
  * not move, m n (n + 1) / 2 or m n^2 multiplications more.
- * Errors: MH_ERR_NOT_FINITE (an input, or the result overflows), MH_ERR_SINGULAR (F P F' + Q has a variance of 0). */
+ * Errors: MH_ERR_NOT_FINITE (an input, or the result overflows), MH_ERR_SINGULAR (F P F' + Q has a variance of 0); in fixed point MH_ERR_RANGE (U overflows). */
 enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q);
 
 /* Take one scalar z = h' x + noise, as `innovation` = z - h' x (for an EKF: z minus the predicted measurement, with h its
  * gradient at x), with noise variance R = `variance` >= 1.2e-38. gate may be NULL. 3 n^2 / 2 + 9 n / 2 multiplications, 2 n + 1 divisions.
  * Errors: MH_NONE (refused by the gate, which counts it; the filter is untouched), MH_ERR_NOT_FINITE (an input, or the result is too
- * large or too small for mh_real), MH_ERR_ARGUMENT (variance below its range). */
+ * large or too small for mh_real), MH_ERR_ARGUMENT (variance below its range, which in fixed point begins at 1.5e-5); in fixed point MH_ERR_RANGE (U overflows). */
 enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_real innovation, mh_real variance,
                                 struct mh_gate *gate);
 
@@ -70,8 +82,9 @@ static inline void mh_kalman_covariance(const struct mh_kalman *filter, mh_real 
     mh_kalman_covariance_of(filter, filter->n, P);
 }
 
-/* F and Q of motion at constant velocity in the plane for dt seconds, states (x, y, vx, vy), with white acceleration of
- * `intensity` (m/s2)2 s in each axis (Bar-Shalom, Li and Kirubarajan, 2001, Eq. (6.2.2-12)). F: 16 elements, Q: 10, packed. */
+/* F and Q of motion at constant velocity in the plane for dt > 0 seconds, states (x, y, vx, vy), with white acceleration of
+ * `intensity` (m/s2)2 s in each axis (Bar-Shalom, Li and Kirubarajan, 2001, Eq. (6.2.2-12)). F: 16 elements, Q: 10, packed. In fixed point the
+ * variance of the position is rounded so that Q stays positive semidefinite. */
 void mh_kalman_constant_velocity(mh_real dt, mh_real intensity, mh_real *F, mh_real *Q);
 
 #endif

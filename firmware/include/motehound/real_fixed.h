@@ -56,6 +56,9 @@ static inline mh_real mh_mul(mh_real a, mh_real b)
 #endif
 mh_real mh_div(mh_real a, mh_real b);
 
+/* a b / 2^shift, rounded and saturated, for shift <= 62: a product of numbers in other formats. */
+int32_t mh_mul_shift(int32_t a, int32_t b, uint8_t shift);
+
 /* A product of two reals, exact, with 32 fractional bits; two of them may be added. */
 typedef int64_t mh_wide;
 static inline mh_wide mh_wide_mul(mh_real a, mh_real b) { return (int64_t)a * b; }

@@ -89,6 +89,29 @@ mh_real mh_mul(mh_real a, mh_real b)
 }
 #endif
 
+int32_t mh_mul_shift(int32_t a, int32_t b, uint8_t shift)
+{
+    if (shift == 0) {
+        return mh_real_saturate((int64_t)a * b);
+    }
+    uint32_t low = shift <= 32 ? (uint32_t)1 << (shift - 1) : 0;
+    int32_t high = multiply(a, b, &low);
+    if (shift > 32) {
+        shift = (uint8_t)(shift - 33);
+        high >>= shift; /* and half of that, rounded: no sum to overflow */
+        return (high >> 1) + (high & 1);
+    }
+    if (shift == 32) {
+        return high;
+    }
+    const int32_t over = high >> (shift - 1);
+    if (over != 0 && over != -1) {
+        return high < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
+    }
+    const int32_t result = (int32_t)((uint32_t)high << (32 - shift) | low >> shift);
+    return mh_finite(result) ? result : result < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
+}
+
 /* Products of numbers with 30 fractional bits. An AVR shifts bytes at once, bits in a loop. */
 static int32_t without_30_bits(int32_t high, uint32_t low)
 {

@@ -290,14 +290,3 @@ void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_r
 }
 
 mh_real mh_kalman_variance(const struct mh_kalman *filter, uint8_t i) { return element(filter, i, i); }
-
-void mh_kalman_constant_velocity(mh_real dt, mh_real intensity, mh_real *F, mh_real *Q)
-{
-    const mh_real velocity = intensity * dt;
-    const mh_real cross = velocity * dt * (1.0f / 2.0f);
-    const mh_real position = velocity * dt * dt * (1.0f / 3.0f);
-    const mh_real transition[] = {1, 0, dt, 0, 0, 1, 0, dt, 0, 0, 1, 0, 0, 0, 0, 1};
-    const mh_real noise[] = {position, 0, position, cross, 0, velocity, 0, cross, 0, velocity};
-    memcpy(F, transition, sizeof transition);
-    memcpy(Q, noise, sizeof noise);
-}

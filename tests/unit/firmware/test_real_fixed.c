@@ -91,6 +91,13 @@ static void check(mh_real a, mh_real b)
     TEST_ASSERT_EQUAL_INT32(quotient((int64_t)a * 65536, b), mh_div(a, b));
     TEST_ASSERT_EQUAL_INT32(quotient(product, a / 2), mh_wide_div(product, a / 2));
     TEST_ASSERT_EQUAL_INT32(quotient(product, b / 65536), mh_wide_div(product, b / 65536));
+    for (uint8_t shift = 1; shift <= 62;
+         shift = (uint8_t)(shift + 7)) { /* floor(a b / 2^shift + 1/2), without a sum to overflow */
+        const int64_t down = product >> (shift - 1);
+        const int64_t nearest = (down >> 1) + (down & 1);
+        TEST_ASSERT_EQUAL_INT32(saturated(size_of(nearest), nearest < 0), mh_mul_shift(a, b, shift));
+    }
+    TEST_ASSERT_EQUAL_INT32(saturated(size_of(product), product < 0), mh_mul_shift(a, b, 0));
     TEST_ASSERT_EQUAL_INT32(saturated(size_of((int64_t)a + b), (int64_t)a + b < 0), mh_add(a, b));
     assert_root((int64_t)mh_abs(a) * 65536, mh_sqrt(mh_abs(a)));
     assert_root((int64_t)(size_of(product) / 2), mh_wide_sqrt((mh_wide)(size_of(product) / 2)));
