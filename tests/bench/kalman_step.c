@@ -22,7 +22,7 @@ void bench_kalman_setup_dense(void)
 {
     bench_kalman_setup();
     for (int i = 0; i < 16; i++) {
-        F[i] += MH_REAL(0.01f) * (i - 7);
+        F[i] += mh_mul(MH_REAL(0.01f), mh_real_from_int(i - 7));
     }
 }
 

@@ -11,7 +11,7 @@ void mh_kalman_constant_velocity(mh_real dt, mh_real intensity, mh_real *F, mh_r
     const mh_wide square = mh_wide_mul(cross, cross);
     const mh_real least = velocity > 0 ? mh_wide_div(square, velocity) : 0;
     const mh_real position =
-        mh_max(mh_mul(mh_mul(velocity, dt), dt) / 3, least + (mh_wide_mul(least, velocity) < square));
+        mh_max(mh_mul(mh_mul(velocity, dt), dt) / 3, least + (mh_wide_mul(least, velocity) < square ? MH_REAL_MIN : 0));
 #else
     const mh_real position = velocity * dt * dt * (1.0f / 3.0f);
 #endif
