@@ -1,32 +1,47 @@
-/* Numbers on the board's console, without stdio. */
+/* Text and numbers on the board's serial line, without stdio. On AVR texts stay in flash. */
 #ifndef CONSOLE_H
 #define CONSOLE_H
 
 #include "port.h"
 
-#include <stddef.h>
-#include <stdint.h>
+#ifdef __AVR__
+#include <avr/pgmspace.h>
+#define TEXT_BYTE(at) pgm_read_byte(at)
+#define put_text(text) put_stored(PSTR(text))
+#else
+#define TEXT_BYTE(at) (*(at))
+#define put_text(text) put_stored(text)
+#endif
+
+static inline void put_stored(const char *text)
+{
+    for (char c; (c = (char)TEXT_BYTE(text)) != '\0'; text++) {
+        port_uart_put((uint8_t)c);
+    }
+}
+
+/* A text in RAM. */
+static inline void put_name(const char *name)
+{
+    for (; *name; name++) {
+        port_uart_put((uint8_t)*name);
+    }
+}
 
 static inline void put_number(int32_t number)
 {
     uint32_t rest = number < 0 ? 0u - (uint32_t)number : (uint32_t)number;
-    char digits[12];
-    size_t at = sizeof digits;
-    digits[--at] = '\0';
+    uint8_t digits[10], count = 0;
     do {
-        digits[--at] = (char)('0' + rest % 10);
+        digits[count++] = (uint8_t)('0' + rest % 10);
         rest /= 10;
     } while (rest > 0);
     if (number < 0) {
-        digits[--at] = '-';
+        port_uart_put('-');
     }
-    port_puts(&digits[at]);
-}
-
-static inline void put_named(const char *name, int32_t number)
-{
-    port_puts(name);
-    put_number(number);
+    while (count > 0) {
+        port_uart_put(digits[--count]);
+    }
 }
 
 #endif

@@ -31,9 +31,11 @@ void port_exit(int status);
 void port_stack_paint(void);
 uint32_t port_stack_used(void);
 
-/* The same from the top of the stack: what the image has needed in all since the stack was painted; and what variables take, without the stack. */
+/* The same from the top of the stack: what the image has needed in all since the stack was painted; what variables take, without the
+ * stack; and all RAM that there is. */
 uint32_t port_stack_deepest(void);
 uint32_t port_static_ram(void);
+uint32_t port_ram_size(void);
 
 /* The guard: false once the stack has come down to its lowest word. Where the stack ends at memory that cannot be written (Cortex-M, RV32), overflowing is a
  * fault besides. */
@@ -78,9 +80,9 @@ void port_uart_put(uint8_t byte);
 /* Switch on the timer and interrupts. */
 void port_timer_begin(void);
 
-/* A counter of the processor's clock, or on RV32 of instructions; wraps. Differences of it tell what code has cost. How many a second: PORT_HZ of the
- * board. */
+/* A counter of the processor's clock; wraps. Differences of it tell what code has cost. And its frequency; 0: it counts instructions (RV32). */
 uint32_t port_cycles(void);
+uint32_t port_cycles_per_s(void);
 
 /* Milliseconds since port_timer_begin(); wraps. */
 uint32_t port_ticks(void);

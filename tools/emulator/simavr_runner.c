@@ -1,8 +1,9 @@
 /* Runs an AVR image on simavr: bytes of UART0 go to standard output, and the image's exit status becomes this program's.
  *
- *   simavr_runner [-m MCU] [-c NAME=ADDRESS]... IMAGE
+ *   simavr_runner [-m MCU] [-s] [-c NAME=ADDRESS]... IMAGE
  *
  * -m  the chip; without it the one that the image names.
+ * -s  bytes of standard input go to UART0, however long the image runs; the end of the input ends it, with status 0.
  * -c  count the cycles of every call of the function at byte address ADDRESS, from its first instruction to its return; a line
  *     "NAME calls=N min=N max=N mean=N" on standard error tells them.
  *
@@ -12,9 +13,11 @@
 #include <sim_avr.h>
 #include <sim_elf.h>
 
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { BAD_USAGE = 95, STACK_OVERFLOW = 96, NO_END = 97, CRASHED = 98 };
 enum { COUNTERS_MAX = 16, STATUS_REGISTER = 24 };
@@ -52,6 +55,42 @@ static void sleep_at_once(avr_t *avr, avr_cycle_count_t cycles)
     (void)cycles;
 }
 
+/* Standard input as the other end of the line, at the line's own pace: a byte of ten bits at 57,600 baud. While the chip sleeps the host waits a
+ * little, too. */
+enum { LINE_CYCLES = 1280, LINE_WAIT_MS = 1 };
+
+static struct {
+    int open;
+    int slept;
+    avr_irq_t *to_chip;
+    avr_cycle_count_t next;
+} line;
+
+static void sleep_and_listen(avr_t *avr, avr_cycle_count_t cycles)
+{
+    (void)avr;
+    (void)cycles;
+    line.slept = 1;
+}
+
+static void listen_to_line(const avr_t *avr)
+{
+    if (avr->cycle < line.next && !line.slept) {
+        return;
+    }
+    struct pollfd input = {STDIN_FILENO, POLLIN, 0};
+    fflush(stdout);
+    if (poll(&input, 1, line.slept && avr->cycle >= line.next ? LINE_WAIT_MS : 0) > 0 && avr->cycle >= line.next) {
+        unsigned char byte;
+        line.open = read(STDIN_FILENO, &byte, 1) == 1;
+        if (line.open) {
+            avr_raise_irq(line.to_chip, byte);
+        }
+    }
+    line.slept = 0;
+    line.next = avr->cycle > line.next ? avr->cycle + LINE_CYCLES : line.next;
+}
+
 static uint16_t stack_pointer(const avr_t *avr) { return (uint16_t)(avr->data[R_SPL] | avr->data[R_SPH] << 8); }
 
 /* What the call that has just been made left on the stack, high byte lowest, in words. */
@@ -85,7 +124,7 @@ static void count(struct counter *c, const avr_t *avr)
 
 static int usage(void)
 {
-    fprintf(stderr, "usage: simavr_runner [-m MCU] [-c NAME=ADDRESS]... IMAGE\n");
+    fprintf(stderr, "usage: simavr_runner [-m MCU] [-s] [-c NAME=ADDRESS]... IMAGE\n");
     return BAD_USAGE;
 }
 
@@ -105,6 +144,8 @@ int main(int argc, char **argv)
             *equals = '\0';
             counters[counter_count].name = argv[i];
             counters[counter_count++].address = (uint32_t)strtoul(equals + 1, NULL, 0);
+        } else if (strcmp(argv[i], "-s") == 0) {
+            line.open = 1;
         } else if (image == NULL && argv[i][0] != '-') {
             image = argv[i];
         } else {
@@ -128,19 +169,24 @@ int main(int argc, char **argv)
     }
     avr_init(avr);
     avr_load_firmware(avr, &firmware);
-    avr->sleep = sleep_at_once;
+    avr->sleep = line.open ? sleep_and_listen : sleep_at_once;
     avr->log = LOG_ERROR;
     uint32_t uart_flags = 0;
     avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0'), &uart_flags);
     uart_flags &= ~(uint32_t)(AVR_UART_FLAG_STDIO | AVR_UART_FLAG_POLL_SLEEP);
     avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &uart_flags);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), print_byte, NULL);
+    line.to_chip = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
     avr->run_cycle_limit = 1; /* one instruction a call, so that no entry and no return is missed */
     avr->run_cycle_count = 1;
 
     const uint16_t first_free = (uint16_t)(avr->ioend + 1 + firmware.datasize + firmware.bsssize);
+    const int serves = line.open;
     int state = cpu_Running, overflown = 0;
-    while (state != cpu_Done && state != cpu_Crashed && !overflown && avr->cycle < MAX_CYCLES) {
+    while (state != cpu_Done && state != cpu_Crashed && !overflown && (serves ? line.open : avr->cycle < MAX_CYCLES)) {
+        if (serves) {
+            listen_to_line(avr);
+        }
         for (int i = 0; i < counter_count; i++) {
             count(&counters[i], avr);
         }
@@ -152,7 +198,7 @@ int main(int argc, char **argv)
         overflown = below > 2;
     }
 
-    int status = avr->data[STATUS_REGISTER];
+    int status = serves ? 0 : avr->data[STATUS_REGISTER];
     fflush(stdout);
     if (overflown) {
         fprintf(stderr, "simavr_runner: the stack has run into the variables\n");
@@ -160,7 +206,7 @@ int main(int argc, char **argv)
     } else if (state == cpu_Crashed) {
         fprintf(stderr, "simavr_runner: crash at 0x%x\n", avr->pc);
         status = CRASHED;
-    } else if (state != cpu_Done) {
+    } else if (state != cpu_Done && !serves) {
         fprintf(stderr, "simavr_runner: still running after %llu cycles\n", MAX_CYCLES);
         status = NO_END;
     }

@@ -38,6 +38,8 @@ extern uint8_t __heap_start[]; /* the end of the variables; there is no heap */
 
 uint32_t port_static_ram(void) { return (uint16_t)(__heap_start - (uint8_t *)RAMSTART); }
 
+uint32_t port_ram_size(void) { return RAMEND + 1u - RAMSTART; }
+
 __attribute__((weak)) void port_fault(enum port_fault_cause cause, uint32_t address)
 {
     (void)cause;

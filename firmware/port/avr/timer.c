@@ -47,6 +47,8 @@ uint32_t port_cycles(void)
     return over * PERIOD + cycles;
 }
 
+uint32_t port_cycles_per_s(void) { return F_CPU; }
+
 uint32_t port_ticks(void)
 {
     uint16_t cycles;

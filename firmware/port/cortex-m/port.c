@@ -7,7 +7,7 @@
 
 /* from cortex-m.ld */
 extern uint32_t __data_load[], __data_start[], __data_end[], __bss_start[], __bss_end[], __stack_top[];
-extern uint8_t __stack_limit[], end[];
+extern uint8_t __stack_limit[], end[], __ram_size[];
 
 int main(void);
 
@@ -26,6 +26,8 @@ static void semihost(uint32_t operation, const void *argument)
 #include "stack_paint.h"
 
 uint32_t port_static_ram(void) { return (uint32_t)(end - (uint8_t *)__data_start); }
+
+uint32_t port_ram_size(void) { return (uint32_t)__ram_size; }
 
 __attribute__((weak)) void port_fault(enum port_fault_cause cause, uint32_t address)
 {

@@ -45,6 +45,8 @@ uint32_t port_cycles(void)
     return CAPTURED;
 }
 
+uint32_t port_cycles_per_s(void) { return PORT_HZ; }
+
 uint32_t port_ticks(void)
 {
     interrupts_off();

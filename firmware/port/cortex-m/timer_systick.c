@@ -40,6 +40,8 @@ uint32_t port_cycles(void)
     return over * PERIOD + cycles;
 }
 
+uint32_t port_cycles_per_s(void) { return PORT_HZ; }
+
 uint32_t port_ticks(void)
 {
     uint32_t cycles;

@@ -46,6 +46,8 @@ static uint64_t nanoseconds(void)
 
 uint32_t port_cycles(void) { return (uint32_t)nanoseconds(); }
 
+uint32_t port_cycles_per_s(void) { return 1000000000u; }
+
 uint32_t port_ticks(void) { return (uint32_t)(nanoseconds() / 1000000u); }
 
 void port_wait(void) { (void)readable(10); }

@@ -18,6 +18,8 @@ uint32_t port_stack_deepest(void) { return 0; }
 
 uint32_t port_static_ram(void) { return 0; }
 
+uint32_t port_ram_size(void) { return 0; }
+
 bool port_stack_intact(void) { return true; }
 
 void port_fault(enum port_fault_cause cause, uint32_t address)

@@ -6,7 +6,7 @@
 __asm__(".option arch, +zicsr");
 
 /* from the linker script */
-extern uint8_t __stack_limit[], __stack_top[], __data_start[], end[];
+extern uint8_t __stack_limit[], __stack_top[], __data_start[], end[], __ram_size[];
 
 int main(void);
 
@@ -31,6 +31,8 @@ static void semihost(uint32_t operation, const void *argument)
 #include "stack_paint.h"
 
 uint32_t port_static_ram(void) { return (uint32_t)(end - __data_start); }
+
+uint32_t port_ram_size(void) { return (uint32_t)__ram_size; }
 
 __attribute__((weak)) void port_fault(enum port_fault_cause cause, uint32_t address)
 {

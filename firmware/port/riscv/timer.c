@@ -50,4 +50,6 @@ uint32_t port_cycles(void)
     return count;
 }
 
+uint32_t port_cycles_per_s(void) { return 0; }
+
 uint32_t port_ticks(void) { return (uint32_t)((now() - began) / (TIMER_HZ / 1000u)); }
