@@ -28,6 +28,7 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT
   "-nostartfiles --specs=nosys.specs -L${port} -T${port}/${MOTEHOUND_MACHINE}.ld -Wl,--gc-sections -Wl,--fatal-warnings")
 set(CMAKE_CROSSCOMPILING_EMULATOR
   qemu-system-arm;-M;${MOTEHOUND_MACHINE};-nographic;-monitor;none;-serial;none;-semihosting-config;enable=on,target=native;-kernel)
+set(MOTEHOUND_LINE_EMULATOR qemu-system-arm;-M;${MOTEHOUND_MACHINE};-display;none;-monitor;none;-serial;stdio;-kernel)
 
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)

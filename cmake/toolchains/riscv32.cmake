@@ -11,6 +11,7 @@ set(CMAKE_C_FLAGS_INIT
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -T${port}/virt.ld -Wl,--gc-sections")
 set(CMAKE_CROSSCOMPILING_EMULATOR
   qemu-system-riscv32;-M;virt;-bios;none;-nographic;-monitor;none;-serial;none;-semihosting-config;enable=on,target=native;-kernel)
+set(MOTEHOUND_LINE_EMULATOR qemu-system-riscv32;-M;virt;-bios;none;-display;none;-monitor;none;-serial;stdio;-kernel)
 
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)

@@ -23,11 +23,12 @@ struct board_mote {
     struct mh_head_config *head;
     const struct mh_clock_functions *clock;
     struct mh_clock_config *clock_config;
-    void *protocol, *tracker;                           /* configurations ... */
+    void *protocol, *tracker;                          /* configurations ... */
     mh_settings *protocol_settings, *tracker_settings; /* ... and their fields */
     bool samples; /* the sensor each interval, running free; else when the protocol asks for it */
     bool (*self_test)(void);
-    void (*report)(void *context, const struct mh_estimate *estimate); /* board_report, on a mote that knows where targets are */
+    void (*report)(void *context,
+                   const struct mh_estimate *estimate); /* board_report, on a mote that knows where targets are */
 };
 
 /* An estimate on the line, and running free as text. */

@@ -26,19 +26,21 @@ static struct mh_clock clock_state;
 #endif
 
 static struct board_mote board = {
-    .mote = {.id = MOTE_ID,
-             .sensor = &sensor,
-             .head = &head,
-             .protocol = &PROTOCOL,
-             .protocol_config = &protocol_config,
-             .protocol_state = &protocol_state,
-             .head_state = &gathering,
+    .mote =
+        {
+            .id = MOTE_ID,
+            .sensor = &sensor,
+            .head = &head,
+            .protocol = &PROTOCOL,
+            .protocol_config = &protocol_config,
+            .protocol_state = &protocol_state,
+            .head_state = &gathering,
 #ifdef KEEPS_TIME
-             .clock = &mh_clock_flooding,
-             .clock_config = &clock_config,
-             .clock_state = &clock_state,
+            .clock = &mh_clock_flooding,
+            .clock_config = &clock_config,
+            .clock_state = &clock_state,
 #endif
-    },
+        },
     .sensor = &sensor,
     .head = &head,
 #ifdef KEEPS_TIME

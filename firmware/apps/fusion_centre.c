@@ -1,12 +1,17 @@
 /* Image of the mote that joins the tracks of four clusters by covariance intersection, at the sink of the protocol `fixed`. The clusters are those of CLUSTERS: known by configuration to all motes, here when the image
  * is built. */
-#include "board_mote.h"
 #include "motehound/fusion_centre.h"
+#include "board_mote.h"
 #include "self_test.h"
 
 /* Each cluster: four sensors about the corner of a field of 40 m by 40 m, whose middle is the sink's. */
-#define MEMBER(id, x_m, y_m) {(id), {(x_m)*1000L, (y_m)*1000L, 0}}
-#define CLUSTER(first, x, y) MEMBER(first, x, y), MEMBER((first) + 1, (x) + 8, y), MEMBER((first) + 2, x, (y) + 8), MEMBER((first) + 3, (x) + 8, (y) + 8)
+#define MEMBER(id, x_m, y_m)                                                                                           \
+    {                                                                                                                  \
+        (id), { (x_m) * 1000L, (y_m)*1000L, 0 }                                                                        \
+    }
+#define CLUSTER(first, x, y)                                                                                           \
+    MEMBER(first, x, y), MEMBER((first) + 1, (x) + 8, y), MEMBER((first) + 2, x, (y) + 8),                             \
+        MEMBER((first) + 3, (x) + 8, (y) + 8)
 static const struct mh_fixed_member members[16] = {CLUSTER(10, -20, -20), CLUSTER(20, 12, -20), CLUSTER(30, -20, 12),
                                                    CLUSTER(40, 12, 12)};
 static const struct mh_fixed_cluster clusters[4] = {

@@ -28,8 +28,8 @@ static bool knows_least_squares(void)
             return false;
         }
     }
-    return mh_least_squares_solve(&problem, 0, MH_REAL(10.0f), z, &bound) == MH_OK &&
-           near(z[0], MH_REAL(2.3333333f)) && near(z[1], MH_REAL(3.3333333f));
+    return mh_least_squares_solve(&problem, 0, MH_REAL(10.0f), z, &bound) == MH_OK && near(z[0], MH_REAL(2.3333333f)) &&
+           near(z[1], MH_REAL(3.3333333f));
 }
 
 /* Sage-Husa, worked out in double precision */

@@ -13,17 +13,19 @@ static struct mh_clock clock_state;
 #endif
 
 static struct board_mote board = {
-    .mote = {.id = MOTE_ID,
-             .sensor = &sensor,
-             .protocol = &PROTOCOL,
-             .protocol_config = &protocol_config,
-             .protocol_state = &protocol_state,
+    .mote =
+        {
+            .id = MOTE_ID,
+            .sensor = &sensor,
+            .protocol = &PROTOCOL,
+            .protocol_config = &protocol_config,
+            .protocol_state = &protocol_state,
 #ifdef KEEPS_TIME
-             .clock = &mh_clock_flooding,
-             .clock_config = &clock_config,
-             .clock_state = &clock_state,
+            .clock = &mh_clock_flooding,
+            .clock_config = &clock_config,
+            .clock_state = &clock_state,
 #endif
-    },
+        },
     .sensor = &sensor,
 #ifdef KEEPS_TIME
     .clock = &mh_clock_flooding,

@@ -80,7 +80,7 @@ void port_uart_put(uint8_t byte);
 /* Switch on the timer and interrupts. */
 void port_timer_begin(void);
 
-/* A counter of the processor's clock; wraps. Differences of it tell what code has cost. And its frequency; 0: it counts instructions (RV32). */
+/* A counter of the processor's clock, on RV32 of instructions; wraps. Differences of it tell what code has cost. And how much it counts in a second. */
 uint32_t port_cycles(void);
 uint32_t port_cycles_per_s(void);
 

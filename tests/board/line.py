@@ -51,6 +51,8 @@ class Board:
     def __exit__(self, *_):
         self.program.kill()
         self.program.wait()
+        self.program.stdin.close()
+        self.program.stdout.close()
 
     def wait_for_start(self):
         """Bytes sent before the board is up are lost: wait for the line of text that it begins with."""

@@ -2,7 +2,7 @@
 
 #define PROTOCOL mh_protocol_prince
 #define PROTOCOL_SETTINGS mh_settings_prince
-#define PROTOCOL_SAMPLES false /* when it asks for it */
+#define PROTOCOL_SAMPLES false       /* when it asks for it */
 #define PROTOCOL_REPORT board_report /* motes are told where the target is */
 static struct mh_prince_config protocol_config;
 static struct mh_prince protocol_state;
