@@ -39,8 +39,8 @@ static bool knows_filter(void)
     struct mh_sage_husa filter;
     mh_sage_husa_config_default(&config);
     return mh_sage_husa_init(&filter, &config, MH_REAL(2.0f)) == MH_OK &&
-           mh_sage_husa_step(&filter, &config, MH_REAL(5.0f), MH_REAL(1.5f), MH_REAL(0.1f)) == MH_OK &&
-           mh_sage_husa_step(&filter, &config, MH_REAL(3.0f), MH_REAL(-0.5f), MH_REAL(0.2f)) == MH_OK &&
+           mh_sage_husa_step(&filter, &config, MH_REAL(5.0f), MH_REAL(1.5f), MH_SHARE(0.1f)) == MH_OK &&
+           mh_sage_husa_step(&filter, &config, MH_REAL(3.0f), MH_REAL(-0.5f), MH_SHARE(0.2f)) == MH_OK &&
            near(filter.estimate, MH_REAL(3.4722136f)) && near(filter.estimate_variance, MH_REAL(2.6602433f)) &&
            near(filter.measurement_variance, MH_REAL(5.5782501f));
 }
