@@ -56,6 +56,16 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_centroid
   test_clock
   test_collection
+  test_prince_memory
+  test_prince_stamp
+  test_prince
+  test_time_window
+  test_node_class
+  test_geometry
+  test_followed
+  test_election
+  test_draws
+  test_cluster
   test_geographic
   test_geographic_collection
   test_geometry

@@ -134,6 +134,7 @@ enum mh_status mh_head_step(struct mh_head *head, struct mh_estimate *estimate, 
     struct mh_estimate expected;
     const enum mh_status status = tracker->step(state, head->instant, head->measurements, due, estimate);
     head->counters.estimates += status == MH_OK;
+    head->counters.saturated += status == MH_ERR_RANGE || status == MH_ERR_NOT_FINITE;
     head->tracking = tracker->predict(state, head->instant, &expected) == MH_OK;
     *used = due;
     return status;

@@ -14,7 +14,7 @@ static uint8_t count;
 static void use(enum mh_election rule)
 {
     mh_election_config_default(&config, rule);
-    config.sensing_range_m = 50.001f; /* so that a node at 50 m is in, however floats round */
+    config.sensing_range_m = MH_REAL(50.001f); /* so that a node at 50 m is in, however floats round */
     TEST_ASSERT_EQUAL(MH_OK, mh_election_check(&config));
 }
 
@@ -22,7 +22,7 @@ void setUp(void)
 {
     memset(&estimate, 0, sizeof estimate);
     memset(&cluster, 0, sizeof cluster);
-    estimate.velocity.x = estimate.stored_velocity.x = 10.0f;
+    estimate.velocity.x = estimate.stored_velocity.x = MH_REAL(10.0f);
     count = 0;
 }
 
@@ -140,7 +140,7 @@ static void rho_relaxes_what_it_asks_of_a_head(void)
 static void scm_follows_detection(void)
 {
     use(MH_ELECTION_SCM);
-    estimate.position.x = 12.0f;
+    estimate.position.x = MH_REAL(12.0f);
     place(1, 0, 0, true);
     place(2, 10, 0, true);
     place(3, 30, 0, true);
@@ -173,7 +173,7 @@ static void scm_variants_differ_in_when(void)
     use(MH_ELECTION_SCM_NEAR);
     nodes[2].detects = true;
     TEST_ASSERT_EQUAL(MH_NONE, elect());
-    estimate.position.x = 6.0f;
+    estimate.position.x = MH_REAL(6.0f);
     TEST_ASSERT_EQUAL(MH_OK, elect());
     TEST_ASSERT_EQUAL_UINT32(2, cluster.head.id);
     const mh_node_id ids[] = {1, 3};
@@ -183,8 +183,8 @@ static void scm_variants_differ_in_when(void)
 static void sacx_looks_as_far_as_a_disc_is_wide(void)
 {
     use(MH_ELECTION_SACX);
-    config.sensing_range_m = 49.99f; /* 99.98 m at 20 m an interval: P_1 ... P_5 */
-    config.radio_range_m = 60.0f;
+    config.sensing_range_m = MH_REAL(49.99f); /* 99.98 m at 20 m an interval: P_1 ... P_5 */
+    config.radio_range_m = MH_REAL(60.0f);
     place(1, -40, 0, true);
     place(2, 60, 0, false);   /* all five; in the middle */
     place(3, 61, 1, false);   /* all five */
@@ -233,8 +233,8 @@ static void who_is_asked(void)
 static void sacx_looks_from_the_position_itself(void)
 {
     use(MH_ELECTION_SACX);
-    estimate.stored.y = 300.0f;
-    estimate.stored_velocity.x = -10.0f;
+    estimate.stored.y = MH_REAL(300.0f);
+    estimate.stored_velocity.x = MH_REAL(-10.0f);
     place(1, -60, 0, true);
     place(2, 40, 0, true);
     place(3, 0, 290, true);
@@ -284,14 +284,14 @@ static void lowest_identifier_breaks_ties(void)
 {
     for (enum mh_election rule = MH_ELECTION_SACX; rule < MH_ELECTIONS; rule++) {
         use(rule);
-        config.radio_range_m = 200.0f;
+        config.radio_range_m = MH_REAL(200.0f);
         count = 0;
         place(9, -60, 0, rule == MH_ELECTION_SCM_SET); /* the head covers nothing, and detects nothing new */
         place(7, 40, 20, true);
         place(3, 40, 20, true);
         place(5, 40, -20, true);
         lead(0, 0);
-        estimate.position.x = 30.0f;
+        estimate.position.x = MH_REAL(30.0f);
         TEST_ASSERT_EQUAL(MH_OK, elect());
         TEST_ASSERT_EQUAL_UINT32(3, cluster.head.id);
         TEST_ASSERT_EQUAL_UINT32(5, cluster.members[0].id);
@@ -428,10 +428,10 @@ static void what_is_refused(void)
     place(2, 20, 0, true);
     lead(0, 0);
     const struct mh_cluster before = cluster;
-    estimate.stored.x = NAN;
+    estimate.stored.x = mh_real_from_float(NAN);
     TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, elect());
     estimate.stored.x = 0;
-    estimate.stored_velocity.y = INFINITY;
+    estimate.stored_velocity.y = mh_real_from_float(INFINITY);
     TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, elect());
     TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, mh_elect_members(&config, &estimate, nodes, count, &cluster));
     TEST_ASSERT_EQUAL_MEMORY(&before, &cluster, sizeof cluster);
@@ -445,7 +445,7 @@ static void what_is_refused(void)
     wrong.horizon = 0;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_election_check(&wrong));
     wrong = config;
-    wrong.sensing_range_m = NAN;
+    wrong.sensing_range_m = mh_real_from_float(NAN);
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, mh_election_check(&wrong));
     wrong = config;
     wrong.rule = MH_ELECTIONS;

@@ -255,6 +255,19 @@ static void instants_go_on_across_the_wrap(void)
     TEST_ASSERT_TRUE(seen.ordered);
 }
 
+/* What a tracker cannot compute in its numbers is counted, and the head goes on; what it merely cannot tell is not. */
+static void numbers_too_large_are_counted(void)
+{
+    const enum mh_status answers[] = {MH_ERR_RANGE, MH_NONE, MH_ERR_NOT_FINITE, MH_OK, MH_ERR_SINGULAR};
+    for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++) {
+        seen.step_status = answers[i];
+        TEST_ASSERT_EQUAL(answers[i], mh_head_close(&head, &estimate));
+    }
+    TEST_ASSERT_EQUAL_UINT32(2, head.counters.saturated);
+    TEST_ASSERT_EQUAL_UINT32(1, head.counters.estimates);
+    TEST_ASSERT_EQUAL_UINT32(10 * T, head.instant);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -266,6 +279,7 @@ int main(void)
     RUN_TEST(without_a_position_the_next_instant_is_gathered_all_the_same);
     RUN_TEST(what_is_nearly_of_an_instant_is_of_it);
     RUN_TEST(late_measurements_are_passed_on_as_far_as_they_are_wanted);
+    RUN_TEST(numbers_too_large_are_counted);
     RUN_TEST(instants_go_on_across_the_wrap);
     port_exit(UNITY_END() > 0);
     return 0;
