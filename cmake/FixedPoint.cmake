@@ -55,17 +55,11 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
 set(MOTEHOUND_FIXED_POINT_TESTS
   test_centroid
   test_clock
-  test_collection
-  test_prince_memory
-  test_prince_stamp
-  test_prince
-  test_time_window
-  test_node_class
-  test_geometry
-  test_followed
-  test_election
-  test_draws
   test_cluster
+  test_collection
+  test_draws
+  test_election
+  test_followed
   test_geographic
   test_geographic_collection
   test_geometry
@@ -78,22 +72,29 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_luo
   test_mote
   test_neighbours
+  test_node_class
   test_parcel
   test_particles
   test_pftl
+  test_prince
+  test_prince_memory
+  test_prince_stamp
   test_puff_fit
   test_real_fixed
   test_rendezvous
   test_sage_husa
   test_sensor
   test_share
+  test_time_window
   test_vicinity
   test_wire
 )
 set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
+  test_host
   test_identify
   test_scenario
   test_sensor_world
+  test_worker
 )
 # workloads of tests/bench
 set(MOTEHOUND_FIXED_POINT_BENCHES

@@ -202,10 +202,10 @@ static void hear_form(mh_tick time, mh_tick first, mh_node_id head, int32_t gene
     hear(time, &message);
 }
 
-static void measure(mh_tick time, mh_real range_m)
+static void measure(mh_tick time, float range_m)
 {
     const struct mh_measurement measurement = {
-        .node = node.id, .place = node.place, .time = time, .value = mh_q20_from_real(range_m)};
+        .node = node.id, .place = node.place, .time = time, .value = mh_q20_from_real(mh_real_from_float(range_m))};
     TEST_ASSERT_EQUAL(MH_OK, cluster->publish(&state, AHEAD + time, &measurement));
 }
 
@@ -236,14 +236,14 @@ static void be_head(mh_tick time)
     hear_hello(NEXT, 60000);
     hear_hello(OTHER, 25000);
     hear_hello(SINK, 0);
-    saw.estimate.position.x = 30;
+    saw.estimate.position.x = MH_REAL(30.0f);
     hand_over(time, 5, 0, 1, 1);
     TEST_ASSERT_EQUAL(1, saw.leads);
     TEST_ASSERT_EQUAL(MH_CLUSTER_HEAD, state.role);
 }
 
 /* The instant is closed with so many measurements, the first this node's; the target is at x and moves. */
-static void close_instant(mh_tick instant, mh_real x_m, mh_real vx_mps, uint8_t count)
+static void close_instant(mh_tick instant, int16_t x_m, int16_t vx_mps, uint8_t count)
 {
     static const mh_node_id who[] = {NODE, OTHER, 50, 51, 52, 53};
     struct mh_measurement measurements[6];
@@ -253,8 +253,8 @@ static void close_instant(mh_tick instant, mh_real x_m, mh_real vx_mps, uint8_t 
         measurements[i].node = who[i];
         measurements[i].time = instant;
     }
-    estimate.position.x = estimate.stored.x = x_m;
-    estimate.velocity.x = estimate.stored_velocity.x = vx_mps;
+    estimate.position.x = estimate.stored.x = mh_real_from_int(x_m);
+    estimate.velocity.x = estimate.stored_velocity.x = mh_real_from_int(vx_mps);
     cluster->closed(&state, AHEAD + instant + config.window, instant, count > 0 ? &estimate : NULL, measurements,
                     count);
 }
@@ -388,7 +388,7 @@ static void who_hears_an_ask_for_everyone_answers_once(void)
     pass(LATER + config.window);
     TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_ANSWER]);
     TEST_ASSERT_EQUAL_UINT32(HEAD, saw.destination);
-    TEST_ASSERT_EQUAL_INT32(mh_q20_from_real(-1.5f), saw.message.as.answer.value_q20);
+    TEST_ASSERT_EQUAL_INT32(MH_Q20(-1.5f), saw.message.as.answer.value_q20);
     TEST_ASSERT_FALSE(saw.listens);
 }
 
@@ -845,11 +845,11 @@ static void the_sink_extrapolates(void)
     TEST_ASSERT_EQUAL(1, saw.told);
     TEST_ASSERT_EQUAL_UINT32(LATER + 2 * T, saw.estimate.time);
     TEST_ASSERT_EQUAL_INT32(50000, saw.estimate.origin.x_mm);
-    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 8, saw.estimate.position.x);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 8, mh_real_to_float(saw.estimate.position.x));
     tell_the_sink(LATER + 2 * T + 600, LATER + 2 * T, 500000, 0, 2, OTHER); /* outranked */
     tell_the_sink(LATER + 2 * T + 601, LATER, 0, 0, 3, HEAD);               /* overtaken on its way */
     pass(LATER + 3 * T);
-    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 16, saw.estimate.position.x);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3f, 16, mh_real_to_float(saw.estimate.position.x));
     tell_the_sink(LATER + 3 * T + 600, LATER + 3 * T, 70000, 0, 4, OTHER);
     pass(LATER + 4 * T);
     TEST_ASSERT_EQUAL_INT32(70000, saw.estimate.origin.x_mm);

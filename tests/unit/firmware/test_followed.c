@@ -47,7 +47,8 @@ static void tolerance_is_a_distance(void)
 static void refuses_what_is_no_report(void)
 {
     struct mh_followed followed = {0};
-    const struct mh_vec2 nan = {mh_real_from_float(NAN), 0}, infinite = {0, mh_real_from_float(INFINITY)}, fast = {mh_real_from_float(3e4f * 1e34f), 0}, there = {MH_REAL(1.0f), MH_REAL(2.0f)};
+    const struct mh_vec2 nan = {mh_real_from_float(NAN), 0}, infinite = {0, mh_real_from_float(INFINITY)},
+                         fast = {MH_REAL_UPTO(3e38f), 0}, there = {MH_REAL(1.0f), MH_REAL(2.0f)};
     TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_followed_report(&followed, 1000, nan, still));
     TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, mh_followed_report(&followed, 1000, still, infinite));
     TEST_ASSERT_FALSE(followed.known);

@@ -19,7 +19,7 @@ static struct {
     size_t measurements;
     mh_tick localised_at;
     mh_q20 own_value; /* of the measurement that is the node's own */
-    mh_real energy;   /* that the node hears */
+    float energy;     /* that the node hears */
     enum mh_status status;
     struct mh_estimate estimate, told_of;
     enum mh_status join_status;
@@ -154,8 +154,10 @@ static struct mh_prince state;
 static void settle(void)
 {
     while (saw.sensing) {
-        const struct mh_measurement measurement = {
-            .node = NODE, .place = node.place, .time = saw.time, .value = mh_q20_from_real(saw.energy)};
+        const struct mh_measurement measurement = {.node = NODE,
+                                                   .place = node.place,
+                                                   .time = saw.time,
+                                                   .value = mh_q20_from_real(mh_real_from_float(saw.energy))};
         saw.sensing = false;
         TEST_ASSERT_EQUAL(MH_OK, prince->publish(&state, saw.time + AHEAD, &measurement));
     }
@@ -185,7 +187,7 @@ static void come_up(void)
     memset(&saw, 0, sizeof saw);
     saw.knows_time = true;
     saw.length = 46;
-    saw.estimate.velocity.x = 10;
+    saw.estimate.velocity.x = MH_REAL(10.0f);
     saw.time = 5;
     node = plain;
     TEST_ASSERT_EQUAL(MH_OK, prince->init(&state, &config, &node));
@@ -196,7 +198,7 @@ static void come_up(void)
 
 void setUp(void)
 {
-    mh_prince_config_default(&config, MH_PRINCE_NAMED, true, 40, 140);
+    mh_prince_config_default(&config, MH_PRINCE_NAMED, true, MH_REAL(40.0f), MH_REAL(140.0f));
     config.port = &tracks;
     come_up();
 }
@@ -255,7 +257,7 @@ static struct mh_message sound(const struct mh_message *query, mh_node_id sender
                                                     .target = query->as.locate.target,
                                                     .time_ms = query->as.locate.time_ms,
                                                     .x_mm = (int32_t)sender * 1000,
-                                                    .value_q20 = mh_q20_from_real(2),
+                                                    .value_q20 = MH_Q20(2.0f),
                                                     .share = 255}};
     return message;
 }
@@ -280,14 +282,14 @@ static struct mh_message succeed(int16_t generation, mh_node_id sender, mh_node_
     return message;
 }
 
-static struct mh_message compete(int16_t generation, mh_node_id sender, mh_real energy)
+static struct mh_message compete(int16_t generation, mh_node_id sender, float energy)
 {
     const struct mh_message message = {.kind = MH_MESSAGE_COMPETE,
                                        .as.compete = {.sender = (int32_t)sender,
                                                       .target = (int32_t)TARGET,
                                                       .generation = generation,
                                                       .time_ms = (int32_t)saw.time,
-                                                      .value_q20 = mh_q20_from_real(energy)}};
+                                                      .value_q20 = mh_q20_from_real(mh_real_from_float(energy))}};
     return message;
 }
 
@@ -454,7 +456,7 @@ static void a_fix_makes_a_head_that_tells_the_old_one_and_all(void)
 }
 
 /* Until the locate_t is out, `late` ticks after the query: the hellos of the start are before it. */
-static void ask_and_sample_again(mh_tick late, mh_real energy)
+static void ask_and_sample_again(mh_tick late, float energy)
 {
     ask_as_prince();
     const unsigned sensed = saw.sensed;
@@ -599,7 +601,7 @@ static void three_competitors_are_enough(void)
 static void who_hears_the_target_answers_the_nearer_the_sooner(void)
 {
     static const struct {
-        mh_real energy;
+        float energy;
         mh_tick slot;
     } cases[] = {{1.01f, 252}, {4.01f, 63}, {1600, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -613,7 +615,7 @@ static void who_hears_the_target_answers_the_nearer_the_sooner(void)
         TEST_ASSERT_EQUAL_INT32(OTHER, saw.last[MH_MESSAGE_SOUND].as.sound.asker);
         TEST_ASSERT_EQUAL(255, saw.last[MH_MESSAGE_SOUND].as.sound.share);
     }
-    TEST_ASSERT_EQUAL_INT32(INT32_MAX, mh_q20_from_real(1e9f)); /* saturated is nearest */
+    TEST_ASSERT_EQUAL_INT32(INT32_MAX, mh_q20_from_real(mh_real_from_float(1e9f))); /* saturated is nearest */
 }
 
 /* In slots of 37 ticks, by where the neighbours and the target are expected to be, not by what is heard. */
@@ -634,7 +636,7 @@ static void where_the_target_is_expected_the_nearest_answer_in_turn(void)
 
 static void who_does_not_hear_it_is_silent(void)
 {
-    static const mh_real energies[] = {0.99f, 0, -3};
+    static const float energies[] = {0.99f, 0, -3};
     for (size_t i = 0; i < 3; i++) {
         tell_the(awake((int16_t)(2 * i), HEAD, NEXT));
         saw.energy = energies[i];
@@ -914,7 +916,7 @@ static void or_the_farthest(void)
 /* Radio of 1 km: the target would not leave it for 160 s, but then nobody would believe the fail_t. */
 static void a_watchdog_does_not_wait_until_nobody_believes_it(void)
 {
-    config.radio_range_m = 1000;
+    config.radio_range_m = MH_REAL(1000.0f);
     saw.estimate.velocity.x = 0;
     become_head();
     saw.energy = 0;
@@ -1093,11 +1095,11 @@ static void who_sleeps_wakes_when_the_target_turns_or_fails(void)
 
 #if MH_TARGETS_MAX == 4
 /* Asleep: nearest to this node after so many seconds. */
-static void hear_of(uint32_t target, mh_real seconds)
+static void hear_of(uint32_t target, int32_t seconds)
 {
     struct mh_message message = awake(5, HEAD, NEXT);
     message.as.awake.target = (int32_t)target;
-    message.as.awake.x_mm = 40000 - (int32_t)(seconds * 10000);
+    message.as.awake.x_mm = 40000 - seconds * 10000;
     message.as.awake.y_mm = 90000;
     hear(&message);
 }
@@ -1126,7 +1128,7 @@ static void heads_never_give_way(void)
 {
     become_head();
     for (uint32_t target = 2; target < 9; target++) {
-        hear_of(target, (mh_real)target);
+        hear_of(target, (int32_t)target);
     }
     TEST_ASSERT_EQUAL(MH_PRINCE_HEAD, state_of(TARGET));
     TEST_ASSERT_EQUAL(MH_PRINCE_SLEEP, state_of(8));
@@ -1238,7 +1240,7 @@ static void configurations_are_checked(void)
     bad.replies = 1;
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, prince->init(&state, &bad, &node));
     bad = config;
-    bad.radio_range_m = 40;
+    bad.radio_range_m = MH_REAL(40.0f);
     TEST_ASSERT_EQUAL(MH_ERR_ARGUMENT, prince->init(&state, &bad, &node));
     bad = config;
     bad.watch_period = 249;

@@ -18,7 +18,7 @@ static struct {
     unsigned sensed;
     mh_tick localised_at;
     size_t measurements;
-    mh_real energy; /* that the node hears */
+    float energy; /* that the node hears */
     enum mh_status status;
 } saw;
 
@@ -73,7 +73,7 @@ static enum mh_status localise(void *context, const struct mh_saved_track *track
                                size_t count, mh_tick time, const struct mh_measurement *measurements,
                                size_t measurement_count, struct mh_estimate *estimate, uint8_t *bytes, size_t *length)
 {
-    const struct mh_estimate found = {.time = time, .velocity = {10, 0}, .members = 1};
+    const struct mh_estimate found = {.time = time, .velocity = {MH_REAL(10.0f), 0}, .members = 1};
     (void)context;
     (void)track;
     (void)others;
@@ -139,8 +139,10 @@ static struct mh_prince state;
 static void settle(void)
 {
     while (saw.sensing) {
-        const struct mh_measurement measurement = {
-            .node = NODE, .place = node.place, .time = saw.time, .value = mh_q20_from_real(saw.energy)};
+        const struct mh_measurement measurement = {.node = NODE,
+                                                   .place = node.place,
+                                                   .time = saw.time,
+                                                   .value = mh_q20_from_real(mh_real_from_float(saw.energy))};
         saw.sensing = false;
         TEST_ASSERT_EQUAL(MH_OK, prince->publish(&state, saw.time, &measurement));
     }
@@ -165,7 +167,7 @@ static void hear(struct mh_message message)
 static void come_up(enum mh_prince_election election, bool guarded)
 {
     memset(&saw, 0, sizeof saw);
-    mh_prince_config_default(&config, election, guarded, 40, 140);
+    mh_prince_config_default(&config, election, guarded, MH_REAL(40.0f), MH_REAL(140.0f));
     config.port = &tracks;
     TEST_ASSERT_EQUAL(MH_OK, prince->init(&state, &config, &node));
     prince->start(&state, saw.time);
@@ -208,7 +210,7 @@ static struct mh_message detection(int16_t generation, mh_node_id sender, mh_tic
                                                         .generation = generation,
                                                         .detected_ms = (int32_t)detected,
                                                         .x_mm = (int32_t)sender * 1000,
-                                                        .value_q20 = mh_q20_from_real(2)}};
+                                                        .value_q20 = MH_Q20(2.0f)}};
     return message;
 }
 
