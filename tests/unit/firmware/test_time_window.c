@@ -30,7 +30,7 @@ static void a_node_beside_the_path(void)
 static void edges_are_one_radius_away(void)
 {
     for (int i = 0; i < 24; i++) {
-        const mh_real angle = MH_PI * (i - 12) / 12;
+        const mh_real angle = mh_mul(MH_PI, mh_real_from_ratio(i - 12, 12));
         const struct mh_vec2 u = mh_direction(angle), velocity = {7 * u.x, 7 * u.y},
                              node = {MH_REAL(-15.0f), MH_REAL(30.0f)};
         struct mh_time_window window;
