@@ -56,7 +56,6 @@
     X(FRAMES_LOST_QUEUE, "frames_lost_queue", c->frames_lost_by[LOSS_QUEUE], "frames that the radio refused because it was full")                      \
     X(READINGS, "readings", c->motes.readings, "samples taken by all motes")                                                                       \
     X(READINGS_REFUSED, "readings_refused", c->motes.readings_refused, "samples out of range or out of time")                                      \
-    X(READINGS_SATURATED, "readings_saturated", c->motes.readings_saturated, "samples beyond what a sensor node can tell, +-2048, in value or increment") \
     X(READINGS_UNSYNCHRONISED, "readings_unsynchronised", c->motes.readings_unsynchronised, "readings refused before the network time was known")  \
     X(REPORTS, "reports", c->motes.reports, "readings that a mote reported")                                                                       \
     X(REPORTS_ASKED, "reports_asked", c->motes.reports_asked, "of these reported only because the head asked")                                     \
@@ -71,6 +70,7 @@
     X(MEASUREMENTS, "measurements", c->head.measurements, "reports that reached the head in time")                                                 \
     X(MEASUREMENTS_LATE, "measurements_late", c->head.late, "reports that reached the head too late")                                              \
     X(MEASUREMENTS_OVERFLOWED, "measurements_overflowed", c->head.overflowed, "reports that gave way to stronger ones for want of room")           \
+    X(MEASUREMENTS_SATURATED, "measurements_saturated", c->head.at_end, "reports whose value or increment is where sensor nodes saturate, +-2048") \
     X(SATURATIONS, "saturations", c->head.saturated, "steps that trackers refused because a number was too large for their arithmetic") \
     X(DELIVERY_SHARE, "delivery_share", delivery_share(c), "share of the reports that reached the head, in time or late")                          \
     X(CLUSTERS, "clusters", of_clusters(c, c->clusters.total.formed), "clusters formed after the first")                                           \

@@ -29,7 +29,9 @@ struct mh_head_counters {
     uint32_t repeated;     /* same node, target and instant once more */
     uint32_t overflowed;   /* gave way because MH_REPORTS_MAX was reached */
     uint32_t estimates;    /* positions given */
-    uint32_t saturated;    /* steps that the tracker refused because a number was too large: MH_ERR_RANGE, MH_ERR_NOT_FINITE */
+    uint32_t at_end; /* of the measurements: value or increment at an end of Q11.20, where sensor nodes saturate */
+    uint32_t
+        saturated; /* steps that the tracker refused because a number was too large: MH_ERR_RANGE, MH_ERR_NOT_FINITE */
 };
 
 struct mh_head {

@@ -69,7 +69,6 @@ struct mh_mote_counters {
     uint32_t readings;         /* taken */
     uint32_t readings_refused; /* out of range, out of time */
     uint32_t readings_repeated;
-    uint32_t readings_saturated;      /* of those taken, beyond Q11.20 in value or increment */
     uint32_t readings_unsynchronised; /* refused because the network's time was not known yet */
     uint32_t reports;                 /* measurements handed to the protocol ... */
     uint32_t reports_asked;           /* ... of these, only because a head asked */

@@ -35,7 +35,6 @@ struct mh_sample {
     mh_q20 value;
     mh_q20 increment;   /* value - value one interval before, saturated; 0 unless has_increment */
     bool has_increment; /* the sample one interval before was really taken */
-    bool saturated;     /* value or increment is at an end of Q11.20 */
     bool reported;      /* mh_sensor_mark_reported was called for it */
     uint8_t target;
 };

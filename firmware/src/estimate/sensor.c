@@ -28,19 +28,15 @@ static const struct mh_sensor_past *find(const struct mh_sensor *sensor, mh_tick
     return found;
 }
 
-static bool is_at_end(mh_q20 a) { return a == INT32_MAX || a == INT32_MIN; }
-
 /* Eq. (8) = (13) of Luo, where both samples were really taken. */
 static struct mh_sample sample_of(const struct mh_sensor *sensor, const struct mh_sensor_past *past)
 {
     const struct mh_sensor_past *before = find(sensor, past->time, sensor->config->interval, past->target);
-    const mh_q20 increment = before ? saturate((int64_t)past->value - before->value) : 0;
     const struct mh_sample sample = {
         .time = past->time,
         .value = past->value,
-        .increment = increment,
+        .increment = before ? saturate((int64_t)past->value - before->value) : 0,
         .has_increment = before != NULL,
-        .saturated = is_at_end(past->value) || is_at_end(increment),
         .reported = past->reported,
         .target = past->target,
     };

@@ -26,6 +26,8 @@ static bool gives_way_before(const struct mh_head *head, const struct mh_measure
     return a->node != b->node ? a->node > b->node : order(head, a, b) > 0;
 }
 
+static bool is_at_end(mh_q20 a) { return a == INT32_MAX || a == INT32_MIN; }
+
 static bool is_of_next(const struct mh_head *head, const struct mh_measurement *measurement)
 {
     return mh_tick_before(head->instant, measurement->time);
@@ -109,6 +111,7 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
         }
     }
     head->counters.measurements++;
+    head->counters.at_end += is_at_end(measurement->value) || is_at_end(measurement->increment);
     if (head->count < MH_REPORTS_MAX) {
         insert(head, measurement);
         return MH_OK;

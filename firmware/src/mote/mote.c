@@ -378,7 +378,6 @@ enum mh_status mh_mote_reading(struct mh_mote *mote, mh_tick now, const struct m
         return status;
     }
     mote->counters.readings++;
-    mote->counters.readings_saturated += sample.saturated;
     report_soon(mote, now, &sample);
     set_alarm(mote, false);
     return MH_OK;

@@ -255,6 +255,21 @@ static void instants_go_on_across_the_wrap(void)
     TEST_ASSERT_TRUE(seen.ordered);
 }
 
+static void measurements_at_an_end_are_counted(void)
+{
+    const mh_q20 values[] = {INT32_MAX, INT32_MAX - 1, INT32_MIN, INT32_MIN + 1, 0};
+    struct mh_measurement measurement = {.time = 5 * T, .increment = 1};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        measurement.node++;
+        measurement.value = values[i];
+        TEST_ASSERT_EQUAL(MH_OK, mh_head_measurement(&head, &measurement));
+    }
+    measurement.node++;
+    measurement.increment = INT32_MIN;
+    TEST_ASSERT_EQUAL(MH_OK, mh_head_measurement(&head, &measurement));
+    TEST_ASSERT_EQUAL_UINT32(3, head.counters.at_end);
+}
+
 /* What a tracker cannot compute in its numbers is counted, and the head goes on; what it merely cannot tell is not. */
 static void numbers_too_large_are_counted(void)
 {
@@ -279,6 +294,7 @@ int main(void)
     RUN_TEST(without_a_position_the_next_instant_is_gathered_all_the_same);
     RUN_TEST(what_is_nearly_of_an_instant_is_of_it);
     RUN_TEST(late_measurements_are_passed_on_as_far_as_they_are_wanted);
+    RUN_TEST(measurements_at_an_end_are_counted);
     RUN_TEST(numbers_too_large_are_counted);
     RUN_TEST(instants_go_on_across_the_wrap);
     port_exit(UNITY_END() > 0);
