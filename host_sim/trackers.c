@@ -20,7 +20,6 @@ static mh_real loudness_of(const struct scenario *scenario)
     return real_of(scenario->source.loudness * scenario->sensor.range_m * scenario->sensor.range_m);
 }
 
-#if MOTEHOUND_HAS_CENTROID
 static void set_up_centroid(struct tracker_choice *choice, const struct scenario *scenario,
                             const struct mh_region *region)
 {
@@ -32,9 +31,7 @@ static void set_up_centroid(struct tracker_choice *choice, const struct scenario
         choice->config.centroid.strongest = 3; /* Han 2.1 */
     }
 }
-#endif
 
-#if MOTEHOUND_HAS_LUO
 static void set_up_luo(struct tracker_choice *choice, const struct scenario *scenario, const struct mh_region *region)
 {
     struct mh_luo_config *config = &choice->config.luo;
@@ -48,9 +45,7 @@ static void set_up_luo(struct tracker_choice *choice, const struct scenario *sce
         config->region = *region;
     }
 }
-#endif
 
-#if MOTEHOUND_HAS_PFTL
 /* What a tracker knows of the target: what the scenario tells it, or else how it is. Where it comes from a recording there is no `region`, and
  * nothing is known. */
 struct known_target {
@@ -109,7 +104,6 @@ static void set_up_pftl(struct tracker_choice *choice, const struct scenario *sc
     config->literal = scenario->tracker.literal;
     config->systematic = scenario->tracker.resampling == RESAMPLING_SYSTEMATIC;
 }
-#endif
 
 /* ---- trackers that need float ---- */
 
@@ -342,22 +336,6 @@ void centre_choose(const struct scenario *scenario, size_t count, struct centre_
 
 /* ---- all ---- */
 
-#if MOTEHOUND_HAS_CENTROID
-#define CENTROID &mh_tracker_centroid, set_up_centroid
-#else
-#define CENTROID NULL, NULL
-#endif
-#if MOTEHOUND_HAS_LUO
-#define LUO &mh_tracker_luo, set_up_luo
-#else
-#define LUO NULL, NULL
-#endif
-#if MOTEHOUND_HAS_PFTL
-#define PFTL &mh_tracker_pftl, set_up_pftl
-#else
-#define PFTL NULL, NULL
-#endif
-
 static const struct {
     const char *name;
     const struct mh_tracker *tracker; /* NULL: not in this build */
@@ -367,14 +345,15 @@ static const struct {
 } trackers[] = {
     {"diffusion", FLOAT_ONLY(mh_tracker_diffusion, set_up_diffusion), QUANTITY_CONCENTRATION,
      "moving diffusion source: sliding window of its path, fitted with the exact model"},
-    {"luo", LUO, QUANTITY_CONCENTRATION,
+    {"luo", &mh_tracker_luo, set_up_luo, QUANTITY_CONCENTRATION,
      "moving diffusion source: least squares and Sage-Husa filter (Luo, Chai and Yang)"},
     {"range", FLOAT_ONLY(mh_tracker_range, set_up_range), QUANTITY_RANGE,
      "ranged target: maximum likelihood of an instant, Kalman filter of constant velocity"},
-    {"pftl", PFTL, QUANTITY_RANGE, "ranged target: particles drawn anew about its predicted place (Zhou et al.)"},
+    {"pftl", &mh_tracker_pftl, set_up_pftl, QUANTITY_RANGE,
+     "ranged target: particles drawn anew about its predicted place (Zhou et al.)"},
     {"msl", FLOAT_ONLY(mh_tracker_msl, set_up_msl), QUANTITY_RANGE,
      "ranged target: particles that all who detect it can have (MSL, range-free)"},
-    {"centroid", CENTROID, QUANTITY_RANGE,
+    {"centroid", &mh_tracker_centroid, set_up_centroid, QUANTITY_RANGE,
      "ranged target: the middle of those who detect it (range-free); of sound the three who hear it best"},
     {"cv_ukf", FLOAT_ONLY(mh_tracker_cv_ukf, set_up_cv), QUANTITY_RANGE,
      "ranged target at nearly constant velocity: unscented Kalman filter, samples at any rate (Xu)"},
