@@ -1,11 +1,15 @@
 # What there is in fixed point (MH_REAL=fixed): sources under firmware/src, and unit tests under tests/unit. All else needs float.
 set(MOTEHOUND_FIXED_POINT_SOURCES
+  base/gaussian_bytes
+  base/gaussian_fixed
   base/geometry
   base/real_fixed
+  base/scaled_fixed
   base/share
   estimate/constant_velocity
   estimate/decomposition
   estimate/followed
+  estimate/fusion_fixed
   estimate/kalman_fixed
   estimate/least_squares
   estimate/node_class
@@ -60,6 +64,7 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_draws
   test_election
   test_followed
+  test_fusion_fixed
   test_geographic
   test_geographic_collection
   test_geometry

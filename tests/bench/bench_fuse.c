@@ -18,7 +18,7 @@ static mh_real draw(void)
 {
     static uint32_t seed = 7;
     seed = seed * 1664525u + 1013904223u;
-    return (mh_real)(int32_t)(seed >> 8) * (2.0f / 16777216.0f) - 1.0f;
+    return mh_real_from_float((float)(int32_t)(seed >> 8) * (2.0f / 16777216.0f) - 1.0f);
 }
 
 /* Covariances A A' + 0.1 I, means near to one another. */
@@ -31,7 +31,7 @@ void bench_prepare(unsigned step)
         struct mh_gaussian *estimate = &told[e];
         estimate->n = increments[e].n = 4;
         for (int i = 0; i < 4; i++) {
-            estimate->x[i] = 10 + draw();
+            estimate->x[i] = MH_REAL(10.0f) + draw();
             for (int k = 0; k < 4; k++) {
                 A[i][k] = draw();
             }
@@ -40,12 +40,12 @@ void bench_prepare(unsigned step)
             increments[e].vector[j] = 0;
             for (int i = 0; i <= j; i++) {
                 const int at = MH_PACKED(i, j);
-                estimate->P[at] = i == j ? 0.1f : 0;
+                estimate->P[at] = i == j ? MH_REAL(0.1f) : 0;
                 for (int k = 0; k < 4; k++) {
-                    estimate->P[at] += A[i][k] * A[j][k];
+                    estimate->P[at] += mh_mul(A[i][k], A[j][k]);
                 }
-                split[e].independent[at] = 0.5f * estimate->P[at];
-                increments[e].matrix[at] = A[i][0] * A[j][0] + A[i][1] * A[j][1];
+                split[e].independent[at] = mh_mul(MH_REAL(0.5f), estimate->P[at]);
+                increments[e].matrix[at] = mh_mul(A[i][0], A[j][0]) + mh_mul(A[i][1], A[j][1]);
             }
         }
         split[e].dependent = *estimate;

@@ -19,6 +19,12 @@
  * Errors of all functions that return a status: MH_ERR_ARGUMENT (count is 0 or above MH_FUSED_MAX, the numbers of states differ or are out of range, a weight is
  * negative, their sum is not 1), MH_ERR_NOT_FINITE (an input, or the result overflows), MH_ERR_SINGULAR (a covariance, or the result's, is not positive definite).
  *
+ * Scaling and overflow. In fixed point (MH_REAL=fixed) there are covariance intersection, with weights given or by the traces, and the naive rule, of up to
+ * MH_KALMAN_MOVING_MAX states; all else returns MH_ERR_ARGUMENT. States and covariances are Q15.16. No information matrix is made: the estimate of the largest weight is a
+ * Kalman filter, in the formats of kalman.h, that takes the others as measurements, and the same ranges hold: variances up to 32767, within 2^22 of each other in one
+ * estimate, or MH_ERR_RANGE. Weights below 2^-14 count as 0. A state comes within 0.1 % of its standard deviation; the covariance is rounded up, by 2^-10 of itself and
+ * n units in the last place of the diagonal, so that it is not below the rule's in any direction. docs/fixed_point.md has the error analysis.
+ *
  * Julier and Uhlmann, "A non-divergent estimation algorithm in the presence of unknown correlations", 1997; Xu, Eqs. (29)-(32). Measured costs: docs/costs.md. */
 #ifndef MOTEHOUND_FUSION_H
 #define MOTEHOUND_FUSION_H

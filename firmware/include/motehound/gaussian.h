@@ -2,7 +2,11 @@
  * (fusion.h) joins, and what travels between motes.
  *
  * The covariance is packed as matrix.h says, so it is symmetric by construction; that it is positive definite is checked whenever it comes
- * from outside, and again by every function that changes it. */
+ * from outside, and again by every function that changes it.
+ *
+ * Scaling and overflow. In fixed point (MH_REAL=fixed) there are mh_gaussian_check, mh_gaussian_write and mh_gaussian_read; what changes an estimate is in kalman.h and fusion.h. The
+ * covariance is Q15.16, so a variance is at most 32767 and is right to 7.6e-6; the check scales the largest to 28 bits and finds a P whose variances are further
+ * apart than 2^22 out of its range (MH_ERR_RANGE). In messages the numbers are IEEE binary32, of 24 significant bits, as a float's. */
 #ifndef MOTEHOUND_GAUSSIAN_H
 #define MOTEHOUND_GAUSSIAN_H
 

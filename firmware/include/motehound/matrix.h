@@ -2,7 +2,8 @@
  *
  * An n x n symmetric matrix is its upper triangle, packed column by column (or, the same numbers, its lower triangle row
  * by row): (0,0), (0,1), (1,1), (0,2), ... The caller owns the memory, MH_PACKED_SIZE(n) reals. Everything is done in place,
- * n^3/6 multiplications for the factor, n^2 for a solution, n^3/3 for the inverse, with n square roots. 1 <= n <= 100. */
+ * n^3/6 multiplications for the factor, n^2 for a solution, n^3/3 for the inverse, with n square roots. 1 <= n <= 100. All
+ * but the packing needs MH_REAL=float; fixed point has mh_ud_factor (scaled_fixed.h), and solves nothing (kalman.h, fusion.h). */
 #ifndef MOTEHOUND_MATRIX_H
 #define MOTEHOUND_MATRIX_H
 

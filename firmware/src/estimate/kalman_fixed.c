@@ -1,4 +1,6 @@
-#include "motehound/kalman.h"
+#include "kalman_fixed.h"
+
+#include "motehound/scaled_fixed.h"
 
 #if MH_REAL_FIXED
 
@@ -6,78 +8,12 @@
  * their own, 2^-(16 + filter->exponent), such that the largest element of D lies in 2^27 to 2^28; what they leave of 31 bits is for sums and for U.
  * Divisors become reciprocals of 30 bits with an exponent. */
 enum {
-    TOP = 28,                /* D < 2^TOP */
-    LEAST = 64,              /* of D: 2^-22 of the largest */
     LARGEST_EXPONENT = 32,   /* a filter whose variances are smaller than that has them with fewer bits */
     SMALLEST_EXPONENT = -16, /* a variance of 2^28 */
     COUNT_BITS = MH_KALMAN_STATES_MAX <= 4   ? 2
                  : MH_KALMAN_STATES_MAX <= 8 ? 3
                                              : 4,
 };
-
-/* Binary digits of a: 0 for 0. */
-static uint8_t digits(uint32_t a)
-{
-    uint8_t count = 0;
-    if (a >> 16) {
-        a >>= 16;
-        count = 16;
-    }
-    if (a >> 8) {
-        a >>= 8;
-        count = (uint8_t)(count + 8);
-    }
-    if (a >> 4) {
-        a >>= 4;
-        count = (uint8_t)(count + 4);
-    }
-    static const uint8_t of_four[] = {0, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4};
-    return (uint8_t)(count + of_four[a]);
-}
-
-/* 1 / a = mantissa / 2^(30 + exponent), a >= 1, with a relative error of 2^-27. */
-struct reciprocal {
-    int32_t mantissa; /* 2^29 to 2^30 */
-    uint8_t exponent; /* 2^exponent <= a */
-};
-
-/* A straight line, two steps of Newton in 16 bits, and one in 32, in which all but the last 32 bits of 2^45 - a x are known to be 0. */
-static struct reciprocal reciprocal(int32_t a)
-{
-    const uint8_t exponent = (uint8_t)(digits((uint32_t)a) - 1);
-    const uint32_t normal = (uint32_t)a << (30 - exponent);
-    const int32_t short_of = (int32_t)(normal >> 15); /* 1 to 2, with 15 fractional bits, like x */
-    int32_t x = 46261 - ((15420 * short_of) >> 15);
-    for (uint8_t step = 0; step < 2; step++) {
-        const int32_t error = 32768 - ((short_of * x + 16384) >> 15);
-        x += (x * error + 16384) >> 15;
-    }
-    const int32_t rest = (int32_t)(0 - normal * (uint32_t)x);
-    return (struct reciprocal){x * 32768 + ((x * (rest >> 15)) >> 15), exponent};
-}
-
-/* a 2^shift, rounded, saturated. */
-static int32_t scaled(int32_t a, int8_t shift)
-{
-    if (shift < -31 || a == 0) {
-        return 0;
-    }
-    if (shift < 0) {
-        const int32_t half = a >> (-shift - 1);
-        return (half >> 1) + (half & 1);
-    }
-    if (shift > 30 || mh_abs(a) > MH_REAL_MAX >> shift) {
-        return a < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
-    }
-    return (int32_t)((uint32_t)a << shift);
-}
-
-/* a b / 2^shift, where it is known to fit. */
-static int32_t product(int32_t a, int32_t b, int8_t shift)
-{
-    return shift >= 0 ? shift > 62 ? 0 : mh_mul_shift(a, b, (uint8_t)shift)
-                      : scaled(mh_mul_shift(a, b, 0), (int8_t)-shift);
-}
 
 static mh_real *variance_of(struct mh_kalman *filter, uint_fast8_t i) { return &filter->ud[MH_PACKED(i, i)]; }
 
@@ -86,7 +22,7 @@ static void scale_variances(struct mh_kalman *filter, int8_t shift)
 {
     mh_real *variance = filter->ud;
     for (uint_fast8_t j = 0; j < filter->n; j++) {
-        *variance = mh_max(scaled(*variance, shift), LEAST);
+        *variance = mh_max(mh_scaled(*variance, shift), MH_SCALED_LEAST);
         variance += j + 2;
     }
 }
@@ -100,7 +36,7 @@ static enum mh_status normalise(struct mh_kalman *filter)
         all |= (uint32_t)*variance;
         variance += j + 2;
     }
-    int8_t shift = (int8_t)(TOP - digits(all));
+    int8_t shift = (int8_t)(MH_SCALED_TOP - mh_digits(all));
     if (filter->exponent + shift < SMALLEST_EXPONENT) {
         return MH_ERR_NOT_FINITE;
     }
@@ -109,58 +45,6 @@ static enum mh_status normalise(struct mh_kalman *filter)
     }
     scale_variances(filter, shift);
     filter->exponent = (int8_t)(filter->exponent + shift);
-    return MH_OK;
-}
-
-/* As in kalman.c; P <= 2^30 in the filter's unit. What U loses in rounding is given back to the elements before it: P_ik = u_i D u_k + u_i r_k + r_i u_k. */
-static enum mh_status factor(uint8_t n, mh_real *P, bool raise)
-{
-    mh_real floor[MH_KALMAN_MOVING_MAX];
-    const mh_real *variance = P;
-    for (uint_fast8_t j = 0; j < n; j++) {
-        floor[j] = mh_max(*variance >> 21, LEAST);
-        variance += j + 2;
-    }
-    mh_real *column = P + MH_PACKED_SIZE(n);
-    for (uint_fast8_t j = n; j-- > 0;) {
-        mh_real u[MH_KALMAN_MOVING_MAX];
-        column -= j + 1;
-        if (column[j] < floor[j]) {
-            if (!raise) {
-                return MH_ERR_SINGULAR;
-            }
-            column[j] = floor[j];
-        }
-        if (j == 0) {
-            break;
-        }
-        const struct reciprocal inverse = reciprocal(column[j]);
-        mh_real *other = P;
-        for (uint_fast8_t k = 0; k < j; k++) {
-            u[k] = 0;
-            if (column[k] == 0) {
-                other += k + 1;
-                continue;
-            }
-            u[k] = mh_mul_shift(column[k], inverse.mantissa, (uint8_t)(inverse.exponent + 30 - MH_REAL_BITS));
-            if (!mh_finite(u[k])) {
-                return MH_ERR_RANGE;
-            }
-            const mh_real rest = column[k] - mh_mul(u[k], column[j]);
-            for (uint_fast8_t i = 0; i <= k; i++) {
-                if (u[i] != 0) {
-                    *other = mh_add(*other, -mh_add(mh_mul(u[k], column[i]), mh_mul(rest, u[i])));
-                    if (!mh_finite(*other)) {
-                        return MH_ERR_SINGULAR;
-                    }
-                }
-                other++;
-            }
-        }
-        for (uint_fast8_t k = 0; k < j; k++) {
-            column[k] = u[k];
-        }
-    }
     return MH_OK;
 }
 
@@ -187,14 +71,14 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
     if (smallest <= 0 || across > largest) {
         return MH_ERR_SINGULAR;
     }
-    started.exponent = (int8_t)(TOP - digits((uint32_t)largest));
-    if (scaled(smallest, started.exponent) < LEAST) {
+    started.exponent = (int8_t)(MH_SCALED_TOP - mh_digits((uint32_t)largest));
+    if (mh_scaled(smallest, started.exponent) < MH_SCALED_LEAST) {
         return MH_ERR_RANGE;
     }
     for (uint_fast8_t i = 0; i < mh_packed_size(n); i++) {
-        started.ud[i] = scaled(P[i], started.exponent);
+        started.ud[i] = mh_scaled(P[i], started.exponent);
     }
-    enum mh_status status = factor(n, started.ud, false);
+    enum mh_status status = mh_ud_factor(n, started.ud, false);
     if (status == MH_OK) {
         status = normalise(&started);
     }
@@ -216,7 +100,7 @@ enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real 
     if (variance < MH_REAL_MIN) {
         return MH_ERR_SINGULAR;
     }
-    const int8_t over = (int8_t)(digits((uint32_t)variance) + filter->exponent - TOP);
+    const int8_t over = (int8_t)(mh_digits((uint32_t)variance) + filter->exponent - MH_SCALED_TOP);
     if (over > 0) {
         scale_variances(filter, (int8_t)-over);
         filter->exponent = (int8_t)(filter->exponent - over);
@@ -225,7 +109,7 @@ enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real 
     for (uint_fast8_t i = 0; i < n; i++) {
         column[i] = 0;
     }
-    column[n] = mh_max(scaled(variance, filter->exponent), LEAST);
+    column[n] = mh_max(mh_scaled(variance, filter->exponent), MH_SCALED_LEAST);
     filter->x[n] = mean;
     filter->n++;
     return MH_OK;
@@ -302,7 +186,7 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
         }
     }
     /* Where the sum would be too large, all is scaled down. Beside the diagonal nothing is larger than on it. */
-    const int8_t room = (int8_t)(28 - digits(noise) - filter->exponent);
+    const int8_t room = (int8_t)(28 - mh_digits(noise) - filter->exponent);
     int8_t down = room < 0 ? (int8_t)-room : 0;
     mh_real scaled_W[MH_KALMAN_MOVING_MAX][MH_KALMAN_MOVING_MAX]; /* F U D */
     mh_real largest;
@@ -314,9 +198,9 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
         }
         for (uint_fast8_t j = 0; j < n; j++) {
             const mh_real *variance = filter->ud + MH_PACKED(first[j], first[j]);
-            mh_real sum = scaled(Q[MH_PACKED(j, j)], next.exponent);
+            mh_real sum = mh_scaled(Q[MH_PACKED(j, j)], next.exponent);
             for (uint_fast8_t k = first[j]; k < n; k++) {
-                scaled_W[j][k] = W[j][k] == 0 ? 0 : mh_mul(W[j][k], scaled(*variance, (int8_t)-down));
+                scaled_W[j][k] = W[j][k] == 0 ? 0 : mh_mul(W[j][k], mh_scaled(*variance, (int8_t)-down));
                 if (W[j][k] != 0) {
                     sum = mh_add(sum, mh_mul(W[j][k], scaled_W[j][k]));
                 }
@@ -332,7 +216,7 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
     }
     for (uint_fast8_t j = 1; j < n; j++) {
         for (uint_fast8_t i = 0; i < j; i++) {
-            mh_real sum = scaled(Q[MH_PACKED(i, j)], next.exponent);
+            mh_real sum = mh_scaled(Q[MH_PACKED(i, j)], next.exponent);
             for (uint_fast8_t k = first[i] > first[j] ? first[i] : first[j]; k < n; k++) {
                 if (W[i][k] != 0 && scaled_W[j][k] != 0) {
                     sum += mh_mul(W[i][k], scaled_W[j][k]);
@@ -343,10 +227,10 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
     }
     if (filter->n > n) {
         for (uint_fast8_t k = n; k < filter->n; k++) {
-            *variance_of(&next, k) = mh_max(scaled(*variance_of(&next, k), (int8_t)-down), LEAST);
+            *variance_of(&next, k) = mh_max(mh_scaled(*variance_of(&next, k), (int8_t)-down), MH_SCALED_LEAST);
         }
     }
-    enum mh_status status = factor(n, next.ud, true);
+    enum mh_status status = mh_ud_factor(n, next.ud, true);
     if (status == MH_OK) {
         status = normalise(&next);
     }
@@ -361,7 +245,8 @@ struct scalar {
     mh_real f[MH_KALMAN_STATES_MAX];
     int8_t f_down;
     mh_real innovation; /* as it was */
-    mh_real noise;      /* its variance, as it was */
+    mh_real noise;      /* its variance times 2^-noise_up, as it was */
+    int8_t noise_up;
 };
 
 /* How much the numbers that are added up may have, so that there can be as many of them as states. */
@@ -388,9 +273,9 @@ static enum mh_status project(struct scalar *scalar, const struct mh_kalman *fil
     }
     scalar->f_down = 0;
     if (largest > MH_REAL_ONE || (largest < MH_REAL_ONE / 16 && largest > 0)) {
-        scalar->f_down = (int8_t)(digits((uint32_t)largest) - MH_REAL_BITS);
+        scalar->f_down = (int8_t)(mh_digits((uint32_t)largest) - MH_REAL_BITS);
         for (uint_fast8_t j = 0; j < filter->n; j++) {
-            scalar->f[j] = scaled(scalar->f[j], (int8_t)-scalar->f_down);
+            scalar->f[j] = mh_scaled(scalar->f[j], (int8_t)-scalar->f_down);
         }
     }
     return MH_OK;
@@ -404,22 +289,22 @@ struct expected {
 
 static void expect(struct expected *expected, const struct mh_kalman *filter, const struct scalar *scalar)
 {
-    const int8_t up = (int8_t)(filter->exponent - 2 * scalar->f_down);
-    int8_t size = (int8_t)(digits((uint32_t)scalar->noise) + up);
+    const int8_t up = (int8_t)(filter->exponent - 2 * scalar->f_down + scalar->noise_up);
+    int8_t size = (int8_t)(mh_digits((uint32_t)scalar->noise) + up);
     const mh_real *d = filter->ud;
     for (uint_fast8_t j = 0; j < filter->n; j++) {
         const int8_t this =
-            (int8_t)(digits((uint32_t)*d) + 2 * (digits((uint32_t)mh_abs(scalar->f[j])) - MH_REAL_BITS));
+            (int8_t)(mh_digits((uint32_t)*d) + 2 * (mh_digits((uint32_t)mh_abs(scalar->f[j])) - MH_REAL_BITS));
         size = scalar->f[j] != 0 && this > size ? this : size;
         d += j + 2;
     }
     expected->down = (int8_t)(size - ADDED);
-    expected->noise = scaled(scalar->noise, (int8_t)(up - expected->down));
+    expected->noise = mh_scaled(scalar->noise, (int8_t)(up - expected->down));
     expected->predicted = 0;
     d = filter->ud;
     for (uint_fast8_t j = 0; j < filter->n; j++) {
         const mh_real square = mh_mul_shift(scalar->f[j], scalar->f[j], 2);
-        expected->predicted += product(*d, square, (int8_t)(30 + expected->down));
+        expected->predicted += mh_product(*d, square, (int8_t)(30 + expected->down));
         d += j + 2;
     }
 }
@@ -430,21 +315,21 @@ static bool widen(struct mh_kalman *filter, const struct expected *expected, mh_
     if (!mh_finite(ratio) || expected->predicted < 1) {
         return false;
     }
-    const int8_t up = (int8_t)(digits((uint32_t)ratio) - MH_REAL_BITS);
-    const mh_real wanted = mh_mul(expected->predicted + expected->noise, scaled(ratio, (int8_t)-up)) -
-                           scaled(expected->noise, (int8_t)-up);
+    const int8_t up = (int8_t)(mh_digits((uint32_t)ratio) - MH_REAL_BITS);
+    const mh_real wanted = mh_mul(expected->predicted + expected->noise, mh_scaled(ratio, (int8_t)-up)) -
+                           mh_scaled(expected->noise, (int8_t)-up);
     if (wanted < 1) {
         return false;
     }
-    const struct reciprocal inverse = reciprocal(expected->predicted);
-    const uint8_t size = digits((uint32_t)wanted);
+    const struct mh_reciprocal inverse = mh_reciprocal(expected->predicted);
+    const uint8_t size = mh_digits((uint32_t)wanted);
     const int32_t mantissa = mh_mul_shift(wanted, inverse.mantissa, (uint8_t)(size + 1)); /* 2^27 to 2^29 */
     const int8_t exponent = (int8_t)(filter->exponent - (up + size - inverse.exponent));
     if (exponent < SMALLEST_EXPONENT) {
         return false;
     }
     for (uint_fast8_t j = 0; j < filter->n; j++) {
-        *variance_of(filter, j) = mh_max(mh_mul_shift(*variance_of(filter, j), mantissa, 29), LEAST);
+        *variance_of(filter, j) = mh_max(mh_mul_shift(*variance_of(filter, j), mantissa, 29), MH_SCALED_LEAST);
     }
     filter->exponent = exponent;
     return true;
@@ -453,11 +338,11 @@ static bool widen(struct mh_kalman *filter, const struct expected *expected, mh_
 /* Bierman's update. Its variances are in a unit of their own, in which R has 24 bits, and which grows with alpha, from R to h' P h + R. */
 static enum mh_status take(struct mh_kalman *filter, const struct scalar *scalar)
 {
-    const uint8_t n = filter->n, noise_digits = digits((uint32_t)scalar->noise);
-    int8_t down = (int8_t)(noise_digits + filter->exponent - 2 * scalar->f_down - 24);
+    const uint8_t n = filter->n, noise_digits = mh_digits((uint32_t)scalar->noise);
+    int8_t down = (int8_t)(noise_digits + scalar->noise_up + filter->exponent - 2 * scalar->f_down - 24);
     mh_real g[MH_KALMAN_STATES_MAX] = {0}; /* D f, which becomes P h column by column */
-    mh_real alpha = scaled(scalar->noise, (int8_t)(24 - noise_digits));
-    struct reciprocal inverse = reciprocal(alpha);
+    mh_real alpha = mh_scaled(scalar->noise, (int8_t)(24 - noise_digits));
+    struct mh_reciprocal inverse = mh_reciprocal(alpha);
     mh_real *column = filter->ud;
     for (uint_fast8_t j = 0; j < n; j++) {
         const mh_real f = scalar->f[j];
@@ -466,22 +351,22 @@ static enum mh_status take(struct mh_kalman *filter, const struct scalar *scalar
             for (uint_fast8_t i = 0; i < j; i++) {
                 all |= (uint32_t)mh_abs(column[i]);
             }
-            const int8_t f_digits = (int8_t)(digits((uint32_t)mh_abs(f)) - MH_REAL_BITS);
-            const int8_t u_digits = (int8_t)(digits(all) - MH_REAL_BITS);
-            const int8_t over = (int8_t)(digits((uint32_t)column[j]) + f_digits +
+            const int8_t f_digits = (int8_t)(mh_digits((uint32_t)mh_abs(f)) - MH_REAL_BITS);
+            const int8_t u_digits = (int8_t)(mh_digits(all) - MH_REAL_BITS);
+            const int8_t over = (int8_t)(mh_digits((uint32_t)column[j]) + f_digits +
                                          (f_digits > u_digits ? f_digits : u_digits) - down - ADDED);
             const int8_t grown = over > 0 ? over : 0;
             down = (int8_t)(down + grown);
-            const mh_real gain = product(column[j], f, (int8_t)(MH_REAL_BITS + down)), before = alpha;
+            const mh_real gain = mh_product(column[j], f, (int8_t)(MH_REAL_BITS + down)), before = alpha;
             const mh_real lambda = mh_mul(f, inverse.mantissa); /* 2^-shift of it is f / alpha */
             const uint8_t shift = (uint8_t)(inverse.exponent + 30 - MH_REAL_BITS);
-            alpha = scaled(alpha, (int8_t)-grown) + mh_mul(f, gain);
+            alpha = mh_scaled(alpha, (int8_t)-grown) + mh_mul(f, gain);
             if (alpha < 1024) { /* less than ten bits are left of it */
                 return MH_ERR_RANGE;
             }
-            inverse = reciprocal(alpha);
-            const mh_real ratio = product(before, inverse.mantissa, (int8_t)(inverse.exponent + grown));
-            column[j] = mh_max(mh_mul_shift(column[j], ratio, 30), LEAST);
+            inverse = mh_reciprocal(alpha);
+            const mh_real ratio = mh_product(before, inverse.mantissa, (int8_t)(inverse.exponent + grown));
+            column[j] = mh_max(mh_mul_shift(column[j], ratio, 30), MH_SCALED_LEAST);
             for (uint_fast8_t i = 0; i < j; i++) {
                 const mh_real old = column[i];
                 if (g[i] != 0) {
@@ -489,7 +374,7 @@ static enum mh_status take(struct mh_kalman *filter, const struct scalar *scalar
                     if (!mh_finite(column[i])) {
                         return MH_ERR_RANGE;
                     }
-                    g[i] = scaled(g[i], (int8_t)-grown);
+                    g[i] = mh_scaled(g[i], (int8_t)-grown);
                 }
                 if (old != 0) {
                     g[i] += mh_mul(gain, old);
@@ -502,7 +387,7 @@ static enum mh_status take(struct mh_kalman *filter, const struct scalar *scalar
     const mh_real scale = mh_mul_shift(scalar->innovation, inverse.mantissa, 30);
     for (uint_fast8_t j = 0; j < n; j++) {
         if (g[j] != 0) {
-            filter->x[j] = mh_add(filter->x[j], product(g[j], scale, (int8_t)(inverse.exponent + scalar->f_down)));
+            filter->x[j] = mh_add(filter->x[j], mh_product(g[j], scale, (int8_t)(inverse.exponent + scalar->f_down)));
             if (!mh_finite(filter->x[j])) {
                 return MH_ERR_NOT_FINITE;
             }
@@ -514,10 +399,10 @@ static enum mh_status take(struct mh_kalman *filter, const struct scalar *scalar
 /* The innovation squared over its variance. */
 static mh_real surprise_of(const struct mh_kalman *filter, const struct expected *expected, const struct scalar *scalar)
 {
-    const struct reciprocal inverse = reciprocal(expected->predicted + expected->noise);
+    const struct mh_reciprocal inverse = mh_reciprocal(expected->predicted + expected->noise);
     const mh_real scale = mh_mul_shift(scalar->innovation, inverse.mantissa, 30);
-    return product(scalar->innovation, scale,
-                   (int8_t)(inverse.exponent + 2 * scalar->f_down + expected->down - filter->exponent));
+    return mh_product(scalar->innovation, scale,
+                      (int8_t)(inverse.exponent + 2 * scalar->f_down + expected->down - filter->exponent));
 }
 
 enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_real innovation, mh_real variance,
@@ -557,6 +442,21 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
     return MH_OK;
 }
 
+enum mh_status mh_kalman_update_scaled(struct mh_kalman *filter, const mh_real *h, mh_real innovation, int32_t variance,
+                                       int8_t up)
+{
+    struct scalar scalar = {.innovation = innovation, .noise = variance, .noise_up = up};
+    if (!mh_finite(innovation) || project(&scalar, filter, h) != MH_OK) {
+        return MH_ERR_NOT_FINITE;
+    }
+    struct mh_kalman next = *filter;
+    const enum mh_status status = take(&next, &scalar);
+    if (status == MH_OK) {
+        *filter = next;
+    }
+    return status;
+}
+
 /* Element (i, j) of P, i <= j, times 2^guard. */
 static mh_real element_with(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j, uint8_t guard)
 {
@@ -566,10 +466,10 @@ static mh_real element_with(const struct mh_kalman *filter, uint_fast8_t i, uint
         const mh_real left = i == k ? MH_REAL_ONE : column[i];
         const mh_real right = j == k ? MH_REAL_ONE : column[j];
         if (left != 0 && right != 0) {
-            const int8_t all = (int8_t)(digits((uint32_t)mh_abs(left)) + digits((uint32_t)mh_abs(right)));
+            const int8_t all = (int8_t)(mh_digits((uint32_t)mh_abs(left)) + mh_digits((uint32_t)mh_abs(right)));
             const int8_t over = all > 30 ? (int8_t)(all - 30) : 0;
-            sum = mh_add(sum, product(column[k], product(left, right, over),
-                                      (int8_t)(2 * MH_REAL_BITS - over + filter->exponent - guard)));
+            sum = mh_add(sum, mh_product(column[k], mh_product(left, right, over),
+                                         (int8_t)(2 * MH_REAL_BITS - over + filter->exponent - guard)));
         }
     }
     return sum;
@@ -579,7 +479,7 @@ static mh_real element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast
 {
     enum { GUARD = 8 };
     const mh_real fine = element_with(filter, i, j, GUARD);
-    return mh_finite(fine) ? scaled(fine, -GUARD) : element_with(filter, i, j, 0);
+    return mh_finite(fine) ? mh_scaled(fine, -GUARD) : element_with(filter, i, j, 0);
 }
 
 void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P)
