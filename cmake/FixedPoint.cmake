@@ -6,8 +6,10 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   base/real_fixed
   base/scaled_fixed
   base/share
+  estimate/circles
   estimate/constant_velocity
   estimate/decomposition
+  estimate/distance_fix
   estimate/followed
   estimate/fusion_fixed
   estimate/kalman_fixed
@@ -17,7 +19,9 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   estimate/puff_fit
   estimate/sage_husa
   estimate/sensor
+  model/distance_table
   model/puff
+  model/sound
   model/time_window
   mote/head
   mote/line
@@ -58,9 +62,12 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
 )
 set(MOTEHOUND_FIXED_POINT_TESTS
   test_centroid
+  test_circles
   test_clock
   test_cluster
   test_collection
+  test_distance_fix
+  test_distance_table
   test_draws
   test_election
   test_followed
@@ -90,6 +97,7 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_sage_husa
   test_sensor
   test_share
+  test_sound
   test_time_window
   test_vicinity
   test_wire
@@ -106,4 +114,6 @@ set(MOTEHOUND_FIXED_POINT_BENCHES
   centroid
   known
   pftl
+  sound_cases
+  sound_three
 )

@@ -6,7 +6,7 @@
 
 enum { NODES = 6 };
 
-static const struct mh_sound sound = {1600, 0.19f, 0.05f};
+static const struct mh_sound sound = {MH_REAL(1600.0f), MH_REAL(0.19f), MH_REAL(0.05f)};
 static const struct mh_place origin = {500000, 500000, 0};
 
 struct mh_vec2 bench_state;
@@ -20,20 +20,22 @@ void bench_setup(void) { mh_random_init(&numbers, 1); }
 void bench_prepare(unsigned step)
 {
     (void)step;
-    const struct mh_vec2 target = {20 * mh_random_unit(&numbers) - 10, 20 * mh_random_unit(&numbers) - 10};
+    const struct mh_vec2 target = {20 * mh_random_unit(&numbers) - MH_REAL(10.0f),
+                                   20 * mh_random_unit(&numbers) - MH_REAL(10.0f)};
     for (int i = 0; i < NODES; i++) {
         struct mh_vec2 offset;
         mh_real square;
         do {
-            offset.x = 76 * mh_random_unit(&numbers) - 38;
-            offset.y = 76 * mh_random_unit(&numbers) - 38;
-            square = offset.x * offset.x + offset.y * offset.y;
-        } while (square > 38 * 38);
-        const mh_real noise = 1 + sound.source_sd * (2 * mh_random_unit(&numbers) - 1) * 1.7f;
-        const struct mh_vec2 place = {target.x + offset.x, target.y + offset.y};
-        const struct mh_measurement heard = {.node = (mh_node_id)i,
-                                             .place = mh_place_from_offset(&origin, place),
-                                             .value = mh_q20_from_real(noise * mh_sound_energy(&sound, square))};
+            offset.x = 76 * mh_random_unit(&numbers) - MH_REAL(38.0f);
+            offset.y = 76 * mh_random_unit(&numbers) - MH_REAL(38.0f);
+            square = mh_squared(offset.x) + mh_squared(offset.y);
+        } while (square > MH_REAL(1444.0f));
+        const mh_real error =
+            mh_mul(mh_mul(sound.source_sd, 2 * mh_random_unit(&numbers) - MH_REAL(1.0f)), MH_REAL(1.7f));
+        const struct mh_vec2 place = mh_vec2_along(target, MH_REAL(1.0f), offset);
+        const mh_real energy = mh_mul(MH_REAL(1.0f) + error, mh_sound_energy(&sound, square));
+        const struct mh_measurement heard = {
+            .node = (mh_node_id)i, .place = mh_place_from_offset(&origin, place), .value = mh_q20_from_real(energy)};
         measurements[i] = heard;
     }
     bench_state = target;
@@ -41,7 +43,7 @@ void bench_prepare(unsigned step)
 
 static bool near(const struct mh_vec2 *place, const struct mh_vec2 *target)
 {
-    return mh_abs(place->x - target->x) <= 60 && mh_abs(place->y - target->y) <= 60;
+    return mh_abs(place->x - target->x) <= MH_REAL(60.0f) && mh_abs(place->y - target->y) <= MH_REAL(60.0f);
 }
 
 void bench_step(void)
@@ -49,7 +51,7 @@ void bench_step(void)
     struct mh_heard heard[NODES];
     struct mh_vec2 place;
 #if defined(BENCH_SOUND_THREE) || defined(BENCH_SOUND_CASES)
-    static const struct mh_distance_table table = {40, 40, MH_DISTANCE_MIDDLE};
+    static const struct mh_distance_table table = {MH_REAL(40.0f), 40, MH_DISTANCE_MIDDLE};
     const size_t count = mh_strongest(measurements, 3, &origin, heard, 3);
 #endif
 #if defined(BENCH_SOUND_THREE)

@@ -2,7 +2,12 @@
  * concentric, coincident (Han 2.1, Figs. 2-6 and 2-7, with the nested and mixed configurations completed).
  *
  * Lengths in m, relative to an origin near the work; coordinates finite and within +- 1e6, radii 0 to 1e6. The answer is finite then; for radii of up to
- * 40 m about centres that are less than 100 m apart it is within 65 m of every circle. */
+ * 40 m about centres that are less than 100 m apart it is within 65 m of every circle.
+ *
+ * Scaling and overflow (fixed point). 16 fractional bits throughout; coordinates within +- 1e4, radii 0 to 90, so that the square of the sum of two radii is a number. Squares of distances
+ * between centres saturate from 181 m on, which is as good as any distance at which circles do not cross; products of lengths are wide. Centres less than 1/16 m apart are taken for one. Crossings are
+ * quotients of lengths, not products with an inverse square, which would have few digits: their error is the longest length times 2^-16, some 2 mm, and where circles touch, so that a root is
+ * taken of a rounding, the root of 2^-15 times the radius: 5 cm at 40 m. */
 #ifndef MOTEHOUND_CIRCLES_H
 #define MOTEHOUND_CIRCLES_H
 

@@ -3,7 +3,10 @@
  *
  * The sensing range R is divided into n intervals of width D = R / n. Interval k, from (k - 1) D to k D, is that of the energies n_k <= y < n_(k-1) with
  * n_k = (n / k)^2, in units of the energy at R; n_0 is infinite. For all n that divide 40, so for 4, 8, 10, 20 and 40, the n_k are constants in flash; for
- * others they are computed. Binary search: at most log2(n) + 1 comparisons. */
+ * others they are computed. Binary search: at most log2(n) + 1 comparisons.
+ *
+ * Scaling and overflow (fixed point): 16 fractional bits. n_k is rounded to 8e-6 of the least energy; n_1 of more than 181 intervals is infinite, and so are the energies that
+ * would belong to the first. A distance is right to n roundings of the width, n 8e-6 m, undivided to 1e-5 of it. */
 #ifndef MOTEHOUND_DISTANCE_TABLE_H
 #define MOTEHOUND_DISTANCE_TABLE_H
 

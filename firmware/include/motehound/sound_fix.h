@@ -6,7 +6,12 @@
  *
  * All places are relative to an origin near the work, m. After an error the outputs are untouched: MH_ERR_NOT_FINITE, MH_ERR_RANGE (a place beyond 1e6 m, an energy
  * beyond 1e9), MH_ERR_TOO_FEW (as each says), MH_ERR_ARGUMENT (sound: see sound.h; range 1 to 1e4 m; no iteration; prior). Energies of 0 and below are in order: such
- * a node is at the end of its range, or in a likelihood at what the model says. */
+ * a node is at the end of its range, or in a likelihood at what the model says.
+ *
+ * Scaling and overflow (fixed point). There are mh_heard_insert(), mh_strongest(), mh_heard_centroid(), mh_distance_fix() and mh_median_fix(); what weighs by the model's variances needs
+ * float. Numbers have 16 fractional bits; places are within 10 km of the origin (else MH_ERR_RANGE), distances at most MH_DISTANCE_FIX_RANGE_MAX, so that the
+ * square of the sum of two has room (else MH_ERR_ARGUMENT); see circles.h. An energy comes in 20 fractional bits and is rounded to 16; at the border of an interval that may take it for the
+ * next one. */
 #ifndef MOTEHOUND_SOUND_FIX_H
 #define MOTEHOUND_SOUND_FIX_H
 
@@ -17,6 +22,12 @@
 #include "motehound/status.h"
 
 #include <stddef.h>
+
+#if MH_REAL_FIXED
+#define MH_DISTANCE_FIX_RANGE_MAX MH_REAL(90.0f) /* m */
+#else
+#define MH_DISTANCE_FIX_RANGE_MAX 1e4f
+#endif
 
 /* What one node heard. */
 struct mh_heard {

@@ -1,10 +1,8 @@
-#include "motehound/sound_fix.h"
+#include "heard.h"
 
 #define ENERGY_MIN 0.25f /* what is less is taken for this: nothing is farther than twice the sensing range */
-#define ENERGY_MAX 1e9f
-#define PLACE_MAX 1e6f /* m */
-#define STEP_MAX 15.0f /* m */
-#define SETTLED 0.01f  /* m */
+#define STEP_MAX 15.0f   /* m */
+#define SETTLED 0.01f    /* m */
 
 enum { FINEST = 40, REFINEMENTS = 2 };
 
@@ -12,116 +10,6 @@ enum { FINEST = 40, REFINEMENTS = 2 };
 #define FINE 0.1f    /* m */
 #define MARGIN 10.0f /* m */
 enum { GRID_MAX = 120 };
-
-static enum mh_status check(const struct mh_heard *heard, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        const struct mh_vec2 at = heard[i].place;
-        const mh_real energy = heard[i].energy;
-        if (!(mh_abs(at.x) <= PLACE_MAX && mh_abs(at.y) <= PLACE_MAX && mh_abs(energy) <= ENERGY_MAX)) {
-            return mh_finite(at.x) && mh_finite(at.y) && mh_finite(energy) ? MH_ERR_RANGE : MH_ERR_NOT_FINITE;
-        }
-    }
-    return MH_OK;
-}
-
-void mh_heard_insert(struct mh_heard *heard, size_t *count, size_t capacity, const struct mh_heard *one)
-{
-    size_t at = *count;
-    for (; at > 0 && one->energy > heard[at - 1].energy; at--) {
-        if (at < capacity) {
-            heard[at] = heard[at - 1];
-        }
-    }
-    if (at < capacity) {
-        heard[at] = *one;
-        *count += *count < capacity;
-    }
-}
-
-size_t mh_strongest(const struct mh_measurement *measurements, size_t count, const struct mh_place *origin,
-                    struct mh_heard *heard, size_t capacity)
-{
-    size_t taken = 0;
-    for (size_t i = 0; i < count; i++) {
-        const struct mh_heard one = {mh_place_relative(&measurements[i].place, origin),
-                                     mh_q20_to_real(measurements[i].value)};
-        mh_heard_insert(heard, &taken, capacity, &one);
-    }
-    return taken;
-}
-
-enum mh_status mh_heard_centroid(const struct mh_heard *heard, size_t count, struct mh_vec2 *position)
-{
-    if (count == 0) {
-        return MH_ERR_TOO_FEW;
-    }
-    const enum mh_status status = check(heard, count);
-    if (status != MH_OK) {
-        return status;
-    }
-    struct mh_vec2 sum = {0, 0};
-    for (size_t i = 0; i < count; i++) {
-        sum.x += heard[i].place.x;
-        sum.y += heard[i].place.y;
-    }
-    const mh_real share = 1.0f / (mh_real)count;
-    position->x = share * sum.x;
-    position->y = share * sum.y;
-    return MH_OK;
-}
-
-/* The circles of the first nodes, at most `capacity`. */
-static enum mh_status circles_of(const struct mh_heard *heard, size_t count, const struct mh_distance_table *table,
-                                 uint8_t capacity, struct mh_circle *circles, uint8_t *taken)
-{
-    const uint8_t n = (uint8_t)(count < capacity ? count : capacity);
-    if (n == 0) {
-        return MH_ERR_TOO_FEW;
-    }
-    if (!mh_within(table->range_m, MH_SOUND_NEAR_M, 1e4f)) {
-        return MH_ERR_ARGUMENT;
-    }
-    const enum mh_status status = check(heard, n);
-    if (status != MH_OK) {
-        return status;
-    }
-    for (uint8_t i = 0; i < n; i++) {
-        circles[i].centre = heard[i].place;
-        circles[i].radius = mh_distance(table, heard[i].energy);
-    }
-    *taken = n;
-    return MH_OK;
-}
-
-static struct mh_vec2 one_or_two_circles(const struct mh_circle *circles, uint8_t count)
-{
-    return count == 1 ? circles[0].centre : mh_two_circles(&circles[0], &circles[1]);
-}
-
-enum mh_status mh_distance_fix(const struct mh_heard *heard, size_t count, const struct mh_distance_table *table,
-                               enum mh_circles_variant variant, struct mh_vec2 *position)
-{
-    struct mh_circle circles[3];
-    uint8_t taken;
-    const enum mh_status status = circles_of(heard, count, table, 3, circles, &taken);
-    if (status == MH_OK) {
-        *position = taken < 3 ? one_or_two_circles(circles, taken) : mh_three_circles(circles, variant);
-    }
-    return status;
-}
-
-enum mh_status mh_median_fix(const struct mh_heard *heard, size_t count, const struct mh_distance_table *table,
-                             struct mh_vec2 *position)
-{
-    struct mh_circle circles[MH_CIRCLES_MEDIAN_MAX];
-    uint8_t taken;
-    const enum mh_status status = circles_of(heard, count, table, MH_CIRCLES_MEDIAN_MAX, circles, &taken);
-    if (status == MH_OK) {
-        *position = taken < 3 ? one_or_two_circles(circles, taken) : mh_median_of_triples(circles, taken);
-    }
-    return status;
-}
 
 enum mh_status mh_sound_refine(const struct mh_sound *sound, const struct mh_heard *heard, size_t count,
                                const struct mh_position_prior *prior, uint8_t iterations, struct mh_vec2 *position,
@@ -136,7 +24,7 @@ enum mh_status mh_sound_refine(const struct mh_sound *sound, const struct mh_hea
     struct mh_sym2 known = {0, 0, 0};
     if (prior != NULL) {
         const struct mh_heard expected = {prior->mean, 0};
-        const enum mh_status status = check(&expected, 1);
+        const enum mh_status status = mh_heard_check(&expected, 1);
         if (status != MH_OK) {
             return status;
         }
@@ -146,9 +34,9 @@ enum mh_status mh_sound_refine(const struct mh_sound *sound, const struct mh_hea
         known.xx = known.yy = 1.0f / (prior->sd_m * prior->sd_m);
     }
     const struct mh_heard start = {*position, 0};
-    enum mh_status status = check(&start, 1);
+    enum mh_status status = mh_heard_check(&start, 1);
     if (status == MH_OK) {
-        status = check(heard, count);
+        status = mh_heard_check(heard, count);
     }
     if (status != MH_OK) {
         return status;
@@ -268,7 +156,7 @@ enum mh_status mh_likeliest(const struct mh_sound *sound, const struct mh_heard 
     if (count == 0) {
         return MH_ERR_TOO_FEW;
     }
-    const enum mh_status status = check(heard, count);
+    const enum mh_status status = mh_heard_check(heard, count);
     if (status != MH_OK) {
         return status;
     }

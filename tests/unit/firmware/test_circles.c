@@ -3,6 +3,10 @@
 #include "port.h"
 #include "unity.h"
 
+#define R mh_real_from_float
+#define F mh_real_to_float
+#define TOLERANCE (MH_REAL_FIXED ? 2e-3f : 1e-4f)
+
 void setUp(void) {}
 void tearDown(void) {}
 
@@ -14,23 +18,23 @@ void tearDown(void) {}
 #endif
 #define FARTHEST 65.0f /* m */
 
-static struct mh_circle circle(mh_real x, mh_real y, mh_real radius)
+static struct mh_circle circle(float x, float y, float radius)
 {
-    const struct mh_circle c = {{x, y}, radius};
+    const struct mh_circle c = {{R(x), R(y)}, R(radius)};
     return c;
 }
 
-static void assert_at(mh_real x, mh_real y, struct mh_vec2 point)
+static void assert_at(float x, float y, struct mh_vec2 point)
 {
-    TEST_ASSERT_FLOAT_WITHIN(1e-4f, x, point.x);
-    TEST_ASSERT_FLOAT_WITHIN(1e-4f, y, point.y);
+    TEST_ASSERT_FLOAT_WITHIN(TOLERANCE, x, F(point.x));
+    TEST_ASSERT_FLOAT_WITHIN(TOLERANCE, y, F(point.y));
 }
 
 /* The middle of the lens, of the gap, and of the narrow part between nested circles; either order gives the same. */
 static void point_of_two_circles(void)
 {
     static const struct {
-        mh_real ra, x, y, rb, at, chord; /* the second centre at (x, y); the point on the way there, in shares of it */
+        float ra, x, y, rb, at, chord; /* the second centre at (x, y); the point on the way there, in shares of it */
     } known[] = {
         {10, 12, 16, 10, 0.5f, 0.5f}, /* tangent */
         {10, 9, 12, 10, 0.5f, 0.5f},  /* crossing */
@@ -41,7 +45,7 @@ static void point_of_two_circles(void)
         {0, 9, 12, 0, 0.5f, 0.5f},    /* points */
     };
     for (unsigned i = 0; i < sizeof known / sizeof known[0]; i++) {
-        const mh_real x = known[i].x, y = known[i].y, at = known[i].at, chord = known[i].chord;
+        const float x = known[i].x, y = known[i].y, at = known[i].at, chord = known[i].chord;
         const struct mh_circle a = circle(-3, 7, known[i].ra), b = circle(x - 3, y + 7, known[i].rb);
         assert_at(at * x - 3, at * y + 7, mh_two_circles(&a, &b));
         assert_at(at * x - 3, at * y + 7, mh_two_circles(&b, &a));
@@ -78,8 +82,15 @@ static void crossings_lie_on_both_circles(void)
 static void known_answers(void)
 {
     static const struct {
-        struct mh_circle circles[3];
-        struct mh_vec2 cases, uniform, joint;
+        struct {
+            struct {
+                float x, y;
+            } centre;
+            float radius;
+        } circles[3];
+        struct {
+            float x, y;
+        } cases, uniform, joint;
     } known[] = {
         /* a: one pair tangent, b: all, c: two pairs cross, d: three, e: one, f: none, and on one line */
         {{{{0, 0}, 10}, {{20, 0}, 10}, {{10, 12}, 10}}, {10, 1.81903143f}, {10, 1.81903143f}, {10, 1.81903143f}},
@@ -115,7 +126,10 @@ static void known_answers(void)
         {{{{0, 0}, 12}, {{10, 0}, 12}, {{20, 0}, 12}}, {10, 7.13472553f}, {10, 7.13472553f}, {10, -9.06245368f}},
     };
     for (unsigned i = 0; i < sizeof known / sizeof known[0]; i++) {
-        const struct mh_circle *c = known[i].circles;
+        struct mh_circle c[3];
+        for (int k = 0; k < 3; k++) {
+            c[k] = circle(known[i].circles[k].centre.x, known[i].circles[k].centre.y, known[i].circles[k].radius);
+        }
         assert_at(known[i].cases.x, known[i].cases.y, mh_three_circles(c, MH_CIRCLES_CASES));
         assert_at(known[i].uniform.x, known[i].uniform.y, mh_three_circles(c, MH_CIRCLES_UNIFORM));
         assert_at(known[i].joint.x, known[i].joint.y, mh_three_circles(c, MH_CIRCLES_JOINT));
@@ -131,14 +145,14 @@ static void exact_distances_give_the_place(void)
         const struct mh_circle three[] = {c[i], c[(i + 1) % 3], c[(i + 2) % 3]};
         for (int variant = MH_CIRCLES_CASES; variant <= MH_CIRCLES_JOINT; variant++) {
             const struct mh_vec2 p = mh_three_circles(three, (enum mh_circles_variant)variant);
-            TEST_ASSERT_FLOAT_WITHIN(1e-3f, 500, p.x);
-            TEST_ASSERT_FLOAT_WITHIN(1e-3f, 200, p.y);
+            TEST_ASSERT_FLOAT_WITHIN(10 * TOLERANCE, 500, F(p.x));
+            TEST_ASSERT_FLOAT_WITHIN(10 * TOLERANCE, 200, F(p.y));
         }
     }
     for (uint8_t count = 3; count <= 5; count++) {
         const struct mh_vec2 p = mh_median_of_triples(c, count);
-        TEST_ASSERT_FLOAT_WITHIN(1e-3f, 500, p.x);
-        TEST_ASSERT_FLOAT_WITHIN(1e-3f, 200, p.y);
+        TEST_ASSERT_FLOAT_WITHIN(10 * TOLERANCE, 500, F(p.x));
+        TEST_ASSERT_FLOAT_WITHIN(10 * TOLERANCE, 200, F(p.y));
     }
 }
 
@@ -174,7 +188,7 @@ static void median_is_that_of_the_triples(void)
 
 static struct mh_random numbers;
 
-static mh_real up_to(mh_real limit) { return limit * mh_random_unit(&numbers); }
+static float up_to(float limit) { return limit * F(mh_random_unit(&numbers)); }
 
 enum { RANDOM, COLLINEAR, NEARLY_COLLINEAR, COINCIDENT, CONCENTRIC, NESTED, IN_INTERVALS, ALIKE, KINDS };
 
@@ -183,13 +197,13 @@ static void make(int kind, struct mh_circle c[3])
     for (int i = 0; i < 3; i++) {
         c[i] = circle(up_to(80), up_to(80), up_to(40));
     }
-    const mh_real share = up_to(1);
-    const mh_real near = kind == NEARLY_COLLINEAR ? mh_exp(up_to(12) - 12.0f) : 0;
+    const float share = up_to(1);
+    const float near = kind == NEARLY_COLLINEAR ? F(mh_exp(R(up_to(12) - 12.0f))) : 0;
     switch (kind) {
     case COLLINEAR:
     case NEARLY_COLLINEAR:
-        c[2].centre.x = c[0].centre.x + share * (c[1].centre.x - c[0].centre.x) + near;
-        c[2].centre.y = c[0].centre.y + share * (c[1].centre.y - c[0].centre.y) - near;
+        c[2].centre.x = c[0].centre.x + R(share * F(c[1].centre.x - c[0].centre.x) + near);
+        c[2].centre.y = c[0].centre.y + R(share * F(c[1].centre.y - c[0].centre.y) - near);
         break;
     case COINCIDENT:
         c[1].centre = c[0].centre;
@@ -198,18 +212,18 @@ static void make(int kind, struct mh_circle c[3])
         c[2].centre = c[1].centre = c[0].centre;
         break;
     case NESTED:
-        c[0].radius = 40;
-        c[1].centre.x = c[0].centre.x + up_to(10);
-        c[1].radius = up_to(20);
-        c[2].centre.y = c[1].centre.y + up_to(5);
-        c[2].radius = up_to(5);
+        c[0].radius = R(40);
+        c[1].centre.x = c[0].centre.x + R(up_to(10));
+        c[1].radius = R(up_to(20));
+        c[2].centre.y = c[1].centre.y + R(up_to(5));
+        c[2].radius = R(up_to(5));
         break;
     case IN_INTERVALS: /* a grid of nodes and a coarse table: circles touch, go through centres, are alike */
     case ALIKE:
         for (int i = 0; i < 3; i++) {
-            c[i].centre.x = 10.0f * (mh_real)(int)up_to(8);
-            c[i].centre.y = 10.0f * (mh_real)(int)up_to(8);
-            c[i].radius = kind == ALIKE ? 20.0f : 5.0f + 10.0f * (mh_real)(int)up_to(4);
+            c[i].centre.x = R(10.0f * (float)(int)up_to(8));
+            c[i].centre.y = R(10.0f * (float)(int)up_to(8));
+            c[i].radius = R(kind == ALIKE ? 20.0f : 5.0f + 10.0f * (float)(int)up_to(4));
         }
         break;
     default:
@@ -226,9 +240,8 @@ static void any_triple_gives_a_point_near_its_circles(void)
         for (int variant = MH_CIRCLES_CASES; variant <= MH_CIRCLES_JOINT; variant++) {
             const struct mh_vec2 p = mh_three_circles(c, (enum mh_circles_variant)variant);
             for (int k = 0; k < 3; k++) {
-                const mh_real dx = p.x - c[k].centre.x, dy = p.y - c[k].centre.y;
-                const mh_real off = mh_abs(mh_sqrt(dx * dx + dy * dy) - c[k].radius);
-                TEST_ASSERT_TRUE(off <= FARTHEST); /* false for NaN */
+                const mh_real off = mh_abs(mh_vec2_length(mh_vec2_between(p, c[k].centre)) - c[k].radius);
+                TEST_ASSERT_TRUE(off <= R(FARTHEST)); /* false for NaN */
             }
         }
     }
