@@ -4,7 +4,8 @@
     compare.py FIXED FLOAT
 
 The root mean square position error of each differs by at most 2 %, and no number saturates. Luo's tracker follows the same course in both; particles are drawn
-from other numbers, so the means of 200 runs, whose standard errors are 0.4 %, are compared. Exit status 77 where there is no float build."""
+from other numbers, so the means of 200 runs, whose standard errors are 0.4 %, are compared. A source that releases a thousand times as much as Luo's saturates
+sensors, and the tracker in fixed point: both are counted. Exit status 77 where there is no float build."""
 
 import json
 import os
@@ -17,14 +18,14 @@ CASES = [("luo_exp1", "luo", 10), ("zhou_nominal", "pftl", 200), ("zhou_nominal"
 LARGEST_SHARE = 0.02
 
 
-def run(command, scenario, tracker, runs):
+def run(command, scenario, tracker, runs, *more):
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "out")
-        subprocess.run([command, "run", scenario, "--set", "tracker.name=" + tracker, "--runs", str(runs), "--jobs", "2", "--out", out],
+        subprocess.run([command, "run", scenario, "--set", "tracker.name=" + tracker, "--runs", str(runs), "--jobs", "2", "--out", out, *more],
                        check=True, stdout=subprocess.DEVNULL)
         with open(os.path.join(out, "summary.json")) as file:
             metrics = json.load(file)["metrics"]
-    return metrics["position_rmse_m"]["mean"], metrics["saturations"]["mean"] + metrics["measurements_saturated"]["mean"]
+    return [metrics[name]["mean"] if name in metrics else None for name in ("position_rmse_m", "saturations", "measurements_saturated")]
 
 
 def main():
@@ -34,12 +35,14 @@ def main():
         return 77
     failed = False
     for scenario, tracker, runs in CASES:
-        (error_fixed, saturated), (error_float, _) = run(fixed, scenario, tracker, runs), run(floating, scenario, tracker, runs)
+        (error_fixed, *saturated), (error_float, *_) = run(fixed, scenario, tracker, runs), run(floating, scenario, tracker, runs)
         share = error_fixed / error_float - 1
-        failed = failed or abs(share) > LARGEST_SHARE or saturated > 0
-        print("%-13s %-9s %3d runs: %.4f m in fixed point, %.4f m in float: %+.3f %%; %g saturations a run"
-              % (scenario, tracker, runs, error_fixed, error_float, 100 * share, saturated))
-    return 1 if failed else 0
+        failed = failed or abs(share) > LARGEST_SHARE or any(saturated)
+        print("%-13s %-9s %3d runs: %.4f m in fixed point, %.4f m in float: %+.3f %%"
+              % (scenario, tracker, runs, error_fixed, error_float, 100 * share))
+    _, steps, measurements = run(fixed, "luo_exp1", "luo", 1, "--set", "source.release_gps=1e5")
+    print("luo_exp1 with 1e5 g/s: %g measurements and %g steps saturated" % (measurements, steps))
+    return 1 if failed or steps == 0 or measurements == 0 else 0
 
 
 if __name__ == "__main__":
