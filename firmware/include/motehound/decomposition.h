@@ -1,5 +1,7 @@
 /* The sound of several targets at one node, told apart by where they are expected: the share of each in the measured energy (Han, Eqs. (3-3), (3-4), (3-6)).
  *
+ * Scaling and overflow (fixed point): squared distances are wide, their ratios Q15.16: a share is right to 1.5e-5 a source, and 0 where another is 181 times as near; a loudness is at most 32,767.
+ *
  * The prediction need not be good: the shares of two sources 40 m apart, predicted to 3 m, are off by 0.31 in the logarithm of the energy (root mean square). What is
  * left of the energy after the others' expected sound is taken away (mh_sound_residual) is off by twice that. */
 #ifndef MOTEHOUND_DECOMPOSITION_H

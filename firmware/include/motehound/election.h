@@ -24,6 +24,9 @@
  *             within that range; failing that anywhere.
  * Remaining ties go to the lowest identifier.
  *
+ * Scaling and overflow (fixed point): Q15.16; places within 32,767 m of the estimate's origin, those farther off count as infinitely far. Distances are compared as exact squares, and only the
+ * merit of rho is rounded, to 1.5e-5 m.
+ *
  * Cost: linear in the candidates, times the horizon for sac and sacx, when a new cluster is due; else linear in the cluster. */
 #ifndef MOTEHOUND_ELECTION_H
 #define MOTEHOUND_ELECTION_H

@@ -5,7 +5,9 @@
  * error. This is the error-tolerant storing of Zhou, whose two stored fixes are position and velocity, and dual prediction (Jain, Chang
  * and Wang, SIGMOD 2004) where the velocity is a filter's.
  *
- * Coordinates are in metres relative to an origin that its owner keeps. */
+ * Coordinates are in metres relative to an origin that its owner keeps.
+ *
+ * Scaling and overflow (fixed point): Q15.16; an extrapolation is right to 8e-6 m beside the velocity's own 8e-6 m/s, and beyond 32,767 m not finite. Distances are compared as exact squares. */
 #ifndef MOTEHOUND_FOLLOWED_H
 #define MOTEHOUND_FOLLOWED_H
 

@@ -10,6 +10,8 @@
  * with R the sensing range. Nodes farther off, and those behind the perpendicular, have nothing to do with the target. For a group of extent rho (the
  * largest distance of a member from its centre, which p and v are of) every strip is wider by rho.
  *
+ * Scaling and overflow (fixed point): Q15.16, so all within 32,767 m, or the class is none; the products that are compared are exact.
+ *
  * The prince, who is to lead next, is the inner node that the target comes within range of after a path nearest to a wanted length, or the longest. */
 #ifndef MOTEHOUND_NODE_CLASS_H
 #define MOTEHOUND_NODE_CLASS_H

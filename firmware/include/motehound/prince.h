@@ -120,7 +120,7 @@ struct mh_prince_config {
     mh_real margin_m;        /* r, 0 to R. Nominal R / 5 */
     mh_real outer_m;         /* d_outer, R to 10 R. Nominal 2 R; as published R + r */
     mh_real exception;       /* energy, 1 to 100. Nominal (R / (R - r))^2; as published 1 */
-    mh_real loudness_m2;     /* C, of all targets. Nominal R^2 */
+    mh_real loudness_m2;     /* C, of all targets, 1 to 1e8 (fixed point: 32,767). Nominal R^2 */
     mh_real step_m;          /* L_step: the way that the target goes between fixes, 1 to 10,000. Nominal 1.5 R */
     mh_tick tick;    /* between samples of a watcher, which are at its whole multiples. 20 to 60,000, nominal 250 */
     mh_tick window;  /* answers are waited for so long, twice as long those about groups. 20 to 10,000, nominal 300 */

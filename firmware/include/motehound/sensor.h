@@ -1,5 +1,7 @@
 /* The sensor node's half of estimation, in integers only: ADC counts to a quantity, differencing of consecutive samples
- * (Luo, Eq. (8) = (13)) and the decision whether the sample is worth a report. */
+ * (Luo, Eq. (8) = (13)) and the decision whether the sample is worth a report.
+ *
+ * Scaling and overflow: Q11.20 whatever mh_real is; products and differences in 64 bits, saturated to +-2048 of the sensor's unit, which heads count (head.h). Nothing is rounded. */
 #ifndef MOTEHOUND_SENSOR_H
 #define MOTEHOUND_SENSOR_H
 
