@@ -61,8 +61,11 @@ static void nobody_there(void)
 
 static void of_a_group_the_middle(void)
 {
-    struct mh_estimate estimate = {
-        .origin = {95000, 20000, 0}, .position = {MH_REAL(5.0f), MH_REAL(6.0f)}, .members = 2, .target = 16, .of = {16, 32}};
+    struct mh_estimate estimate = {.origin = {95000, 20000, 0},
+                                   .position = {MH_REAL(5.0f), MH_REAL(6.0f)},
+                                   .members = 2,
+                                   .target = 16,
+                                   .of = {16, 32}};
     const struct identified found = identify_estimate(&identify, &targets, &estimate, 10);
     TEST_ASSERT_EQUAL_UINT32(NOT_IDENTIFIED, found.number);
     TEST_ASSERT_TRUE(found.state.present);
