@@ -587,7 +587,7 @@ static uint64_t work(const struct board *board, uint32_t cycles)
 
 static mh_tick interval_of(const struct host_mote *what)
 {
-    return what->sensor ? what->sensor->interval : what->head ? what->head->interval : MH_TICKS_PER_S;
+    return what->head ? what->head->interval : what->sensor ? what->sensor->interval : MH_TICKS_PER_S;
 }
 
 /* The event has taken its time: count it, and tell what it has cost. `heard`: the frame's kind, if it was one. */

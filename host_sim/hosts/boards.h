@@ -35,12 +35,13 @@ const char *emulation_images(void);
 struct board_result {
     mh_node_id node;
     char board[BOARD_NAME_MAX], image[BOARD_IMAGE_MAX];
-    bool fixed;                     /* its arithmetic */
-    uint64_t events;                /* that it handled */
-    uint64_t cycles;                /* that they took; of QEMU, instructions ... */
-    uint64_t cycles_max;            /* ... the longest */
-    double rate_hz;                 /* so many make a second */
-    uint64_t missed;                /* events that took longer than the mote's sampling interval */
+    bool fixed;          /* its arithmetic */
+    uint64_t events;     /* that it handled */
+    uint64_t cycles;     /* that they took; of QEMU, instructions ... */
+    uint64_t cycles_max; /* ... the longest */
+    double rate_hz;      /* so many make a second */
+    uint64_t
+        missed; /* events that took longer than from one sampling instant to the next, a head's or else the sensor's */
     uint64_t overlapped;            /* events that came before the one before was through */
     uint32_t ram, variables, stack; /* bytes: what there is, what is static, the stack at its deepest; 0 on the host */
     uint32_t reports_max, neighbours_max; /* capacities of the image */
