@@ -2,7 +2,7 @@
 # Motes on emulated boards among those of this process: the same track. $BUILDS is the folder of all builds, whose firmware/apps have the images, $APPS the
 # images of this build, $ARITHMETIC empty or -fixed. Boards that are not there are left out, unless $ALL_BOARDS says that they must be.
 if [ -z "$IN_OWN_NETWORK" ]; then
-    own=$(dirname "$0")/own_network.sh
+    own=$(dirname "$0")/../network/own_network.sh
     if bash -c '. "$0"' "$own" >/dev/null 2>&1; then
         . "$own"
         IN_OWN_NETWORK=yes own_network sh -c 'ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec "$@"' sh bash "$0"
@@ -10,7 +10,7 @@ if [ -z "$IN_OWN_NETWORK" ]; then
     fi
     IN_OWN_NETWORK=no
 fi
-. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/../network/common.sh"
 for board in atmega128 cortex-m0; do
     if [ -e "$BUILDS/$board$ARITHMETIC/firmware/apps/cluster_head_luo" ]; then
         mkdir -p images
