@@ -32,8 +32,15 @@ static void understand(const struct mh_line_receiver *receiver)
         struct mh_cluster_config cluster;
         struct mh_token_config token;
     } config;
-    static mh_settings *const settings[] = {mh_settings_luo, mh_settings_pftl, mh_settings_acoustic,
-                                            mh_settings_cluster, mh_settings_token};
+    static mh_settings *const settings[] = {
+        mh_settings_luo,
+        mh_settings_pftl,
+        mh_settings_acoustic,
+        mh_settings_cluster,
+#if !MH_REAL_FIXED
+        mh_settings_token,
+#endif
+    };
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
         struct mh_line_fields fields = mh_line_read(receiver);
         memset(&config, 0, sizeof config);

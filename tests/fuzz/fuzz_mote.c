@@ -9,16 +9,18 @@
 #include "motehound/centroid.h"
 #include "motehound/cluster.h"
 #include "motehound/collection.h"
-#include "motehound/diffusion.h"
-#include "motehound/gas.h"
 #include "motehound/geographic.h"
 #include "motehound/geographic_collection.h"
 #include "motehound/luo.h"
 #include "motehound/mote.h"
-#include "motehound/msl.h"
 #include "motehound/pftl.h"
-#include "motehound/range.h"
 #include "motehound/token.h"
+#if !MH_REAL_FIXED
+#include "motehound/diffusion.h"
+#include "motehound/gas.h"
+#include "motehound/msl.h"
+#include "motehound/range.h"
+#endif
 
 #include <string.h>
 
@@ -26,13 +28,15 @@ enum { EVENTS_MAX = 300, ALARMS_MAX = 20, INTERVAL = 1000 };
 
 union tracker_state {
     struct mh_luo luo;
+    struct mh_pftl pftl;
+    struct mh_centroid_state centroid;
+#if !MH_REAL_FIXED
     struct mh_diffusion diffusion;
     struct mh_range range;
-    struct mh_pftl pftl;
     struct mh_msl msl;
-    struct mh_centroid_state centroid;
     struct mh_gas gas;
     struct mh_gas_gaussian gas_gaussian;
+#endif
 };
 
 struct world {
@@ -326,12 +330,14 @@ static void next_event(struct world *world, struct input *input)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const struct mh_tracker *const trackers[4] = {&mh_tracker_luo, &mh_tracker_diffusion, &mh_tracker_range,
-                                                         &mh_tracker_diffusion};
-    static const struct mh_tracker *const trackers_of_clusters[4] = {&mh_tracker_range, &mh_tracker_pftl,
-                                                                     &mh_tracker_msl, &mh_tracker_centroid};
-    static const struct mh_tracker *const trackers_of_searches[4] = {&mh_tracker_gas, &mh_tracker_gas_small,
-                                                                     &mh_tracker_gas_ukf, &mh_tracker_gas_ekf};
+    static const struct mh_tracker *const trackers[4] = {&mh_tracker_luo, FLOAT_ONLY(&mh_tracker_diffusion),
+                                                         FLOAT_ONLY(&mh_tracker_range),
+                                                         FLOAT_ONLY(&mh_tracker_diffusion)};
+    static const struct mh_tracker *const trackers_of_clusters[4] = {FLOAT_ONLY(&mh_tracker_range), &mh_tracker_pftl,
+                                                                     FLOAT_ONLY(&mh_tracker_msl), &mh_tracker_centroid};
+    static const struct mh_tracker *const trackers_of_searches[4] = {
+        FLOAT_ONLY(&mh_tracker_gas), FLOAT_ONLY(&mh_tracker_gas_small), FLOAT_ONLY(&mh_tracker_gas_ukf),
+        FLOAT_ONLY(&mh_tracker_gas_ekf)};
     static const struct mh_port port = {.transmit = transmit, .set_alarm = set_alarm, .report = report, .sense = sense};
     static const struct mh_sensor_config sensor = {
         .q20_per_count = 1 << 8, .counts_max = 65535, .interval = INTERVAL, .threshold = MH_Q20(0.2f)};
@@ -343,14 +349,25 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                                                  : trackers[choice & 3];
     union {
         struct mh_luo_config luo;
+        struct mh_pftl_config pftl;
+        struct mh_centroid_config centroid;
+#if !MH_REAL_FIXED
         struct mh_diffusion_config diffusion;
         struct mh_range_config range;
-        struct mh_pftl_config pftl;
         struct mh_msl_config msl;
-        struct mh_centroid_config centroid;
         struct mh_gas_config gas;
+#endif
     } tracker_config;
+    if (tracker == NULL) {
+        return 0;
+    }
     mh_luo_config_default(&tracker_config.luo);
+    if (tracker == &mh_tracker_pftl) {
+        mh_pftl_config_default(&tracker_config.pftl);
+    } else if (tracker == &mh_tracker_centroid) {
+        mh_centroid_config_default(&tracker_config.centroid);
+    }
+#if !MH_REAL_FIXED
     if (tracker == &mh_tracker_diffusion) {
         mh_diffusion_config_default(&tracker_config.diffusion);
     } else if (tracker == &mh_tracker_range) {
@@ -359,15 +376,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             tracker_config.range.sensing_range_m = 50.0f;
             tracker_config.range.tolerance_m = 5.0f;
         }
-    } else if (tracker == &mh_tracker_pftl) {
-        mh_pftl_config_default(&tracker_config.pftl);
     } else if (tracker == &mh_tracker_msl) {
         mh_msl_config_default(&tracker_config.msl);
-    } else if (tracker == &mh_tracker_centroid) {
-        mh_centroid_config_default(&tracker_config.centroid);
     } else if (searches) {
         mh_gas_config_default(&tracker_config.gas);
     }
+#endif
     static union tracker_state tracker_state;
     static struct mh_head head;
     static union {
@@ -384,8 +398,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                               &sink);
     cluster_config.election.interval = INTERVAL;
     cluster_config.wake_period = second & 8 ? 250 : 0;
-    struct mh_token_config token_config;
+    struct mh_token_config token_config = {.sink = cluster_config.sink};
+#if !MH_REAL_FIXED
     mh_token_config_default(&token_config, cluster_config.sink, &sink);
+#endif
     token_config.start = second & 4 ? 7 : MH_BROADCAST;
     token_config.interval = INTERVAL;
     token_config.window = INTERVAL / 2;
@@ -409,7 +425,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .sensor = &sensor,
         .head = choice & 4 ? NULL : &head_config,
         .protocol = clusters     ? &mh_protocol_cluster
-                    : searches   ? &mh_protocol_token
+                    : searches   ? FLOAT_ONLY(&mh_protocol_token)
                     : geographic ? &mh_protocol_geographic
                                  : &mh_protocol_collection,
         .protocol_config = clusters     ? (const void *)&cluster_config

@@ -1,31 +1,45 @@
 /* Tracks that are handed over: load() on any bytes.
  *
  * The first byte chooses the tracker, the second the length of the track that follows, if it can be handed over; then come instants, each with its distance in time and its
- * measurements, and of trackers that know others, now and then the track of one, which may be joined: one that was saved before, with some bytes changed. Whatever is loaded: a refusal leaves
+ * measurements (bit 6 of the first byte: far places, any values), and of trackers that know others, now and then the track of one, which may be joined: one that was saved before, with some bytes changed. Whatever is loaded: a refusal leaves
  * no track, estimates are finite numbers with covariances that are one, and what is saved again is taken again. */
 #include "fuzz.h"
-#include "motehound/acoustic.h"
 #include "motehound/centroid.h"
+#include "motehound/luo.h"
+#include "motehound/pftl.h"
+#if !MH_REAL_FIXED
+#include "motehound/acoustic.h"
 #include "motehound/gas.h"
 #include "motehound/gas_wind.h"
 #include "motehound/msl.h"
-#include "motehound/pftl.h"
 #include "motehound/range.h"
+#endif
 
 #include <string.h>
 
-enum { INTERVAL = 2000, INSTANTS_MAX = 20, NODES = 6 };
+enum { INTERVAL = 2000, INSTANTS_MAX = 20, NODES = 6, WITH_WIND = 9 };
 
 union state {
-    struct mh_range range;
     struct mh_pftl pftl;
-    struct mh_msl msl;
     struct mh_centroid_state centroid;
+    struct mh_luo luo;
+#if !MH_REAL_FIXED
+    struct mh_range range;
+    struct mh_msl msl;
     struct mh_gas gas;
     struct mh_gas_gaussian gas_gaussian;
     struct mh_gas_wind gas_wind;
     struct mh_acoustic acoustic;
+#endif
 };
+
+/* Of two variances and their covariance, as far as rounding leaves it so. */
+static void check_covariance(mh_real xx, mh_real xy, mh_real yy)
+{
+    const double step = MH_REAL_FIXED, a = (double)xx + step, b = (double)yy + step;
+    require(mh_finite(xx) && mh_finite(xy) && mh_finite(yy) && xx >= 0 && yy >= 0);
+    require((double)xy * (double)xy <= a * b * (1 + 1e-5));
+}
 
 static void check(const struct mh_estimate *estimate)
 {
@@ -35,20 +49,36 @@ static void check(const struct mh_estimate *estimate)
     require(mh_finite(estimate->stored.x) && mh_finite(estimate->stored.y));
     require(mh_finite(estimate->stored_velocity.x) && mh_finite(estimate->stored_velocity.y));
     require(mh_finite(estimate->rate));
-    require(mh_finite(c.xx) && mh_finite(c.xy) && mh_finite(c.yy) && c.xx >= 0 && c.yy >= 0);
-    require((double)c.xy * (double)c.xy <= (double)c.xx * (double)c.yy * (1 + 1e-5));
+    check_covariance(c.xx, c.xy, c.yy);
     require(mh_coordinate_valid(estimate->origin.x_mm) && mh_coordinate_valid(estimate->origin.y_mm));
     if (estimate->states == 3) {
         const mh_real *more = estimate->covariance_more;
-        require(mh_finite(more[0]) && mh_finite(more[1]) && mh_finite(more[2]) && more[2] >= 0);
-        require((double)more[0] * (double)more[0] <= (double)c.xx * (double)more[2] * (1 + 1e-5));
-        require((double)more[1] * (double)more[1] <= (double)c.yy * (double)more[2] * (1 + 1e-5));
+        check_covariance(c.xx, more[0], more[2]);
+        check_covariance(c.yy, more[1], more[2]);
     }
 }
 
 static mh_tick time_of(const uint8_t *track)
 {
     return (mh_tick)track[0] << 24 | (mh_tick)track[1] << 16 | (mh_tick)track[2] << 8 | track[3];
+}
+
+static int32_t any(struct input *input)
+{
+    uint32_t bits = 0;
+    for (int i = 0; i < 4; i++) {
+        bits = bits << 8 | byte(input);
+    }
+    return (int32_t)bits;
+}
+
+/* A coordinate within 128 m of this one, or any. */
+static int32_t beside(int32_t mm, struct input *input, int far)
+{
+    const int64_t sum = mm + (far ? any(input) : (int64_t)(byte(input) - 128) * 1000);
+    return (int32_t)(sum > MH_COORDINATE_MAX_MM    ? MH_COORDINATE_MAX_MM
+                     : sum < -MH_COORDINATE_MAX_MM ? -MH_COORDINATE_MAX_MM
+                                                   : sum);
 }
 
 /* Another track beside this one, or to join it: bytes that were saved before, some of them changed. */
@@ -78,21 +108,35 @@ static void meet(const struct mh_tracker *tracker, void *state, struct input *in
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const struct mh_tracker *const trackers[] = {
-        &mh_tracker_range,    &mh_tracker_range,     &mh_tracker_pftl,    &mh_tracker_msl,     &mh_tracker_centroid,
-        &mh_tracker_gas,      &mh_tracker_gas_small, &mh_tracker_gas_ekf, &mh_tracker_gas_ukf, &mh_tracker_gas_wind,
-        &mh_tracker_acoustic, &mh_tracker_acoustic,  &mh_tracker_dm,      &mh_tracker_ml};
+    static const struct mh_tracker *const trackers[] = {FLOAT_ONLY(&mh_tracker_range),
+                                                        FLOAT_ONLY(&mh_tracker_range),
+                                                        &mh_tracker_pftl,
+                                                        FLOAT_ONLY(&mh_tracker_msl),
+                                                        &mh_tracker_centroid,
+                                                        FLOAT_ONLY(&mh_tracker_gas),
+                                                        FLOAT_ONLY(&mh_tracker_gas_small),
+                                                        FLOAT_ONLY(&mh_tracker_gas_ekf),
+                                                        FLOAT_ONLY(&mh_tracker_gas_ukf),
+                                                        FLOAT_ONLY(&mh_tracker_gas_wind),
+                                                        FLOAT_ONLY(&mh_tracker_acoustic),
+                                                        FLOAT_ONLY(&mh_tracker_acoustic),
+                                                        FLOAT_ONLY(&mh_tracker_dm),
+                                                        FLOAT_ONLY(&mh_tracker_ml),
+                                                        &mh_tracker_luo};
     static union state state, other;
-    struct mh_range_config range;
     struct mh_pftl_config pftl;
-    struct mh_msl_config msl;
     struct mh_centroid_config centroid;
+    struct mh_luo_config luo;
+    mh_pftl_config_default(&pftl);
+    mh_centroid_config_default(&centroid);
+    mh_luo_config_default(&luo);
+#if !MH_REAL_FIXED
+    struct mh_range_config range, errors;
+    struct mh_msl_config msl;
     struct mh_gas_config gas;
     struct mh_gas_wind_config gas_wind;
     mh_range_config_default(&range);
-    mh_pftl_config_default(&pftl);
     mh_msl_config_default(&msl);
-    mh_centroid_config_default(&centroid);
     mh_gas_config_default(&gas);
     mh_gas_wind_config_default(&gas_wind);
     gas_wind.place_count = 3;
@@ -101,23 +145,42 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     gas_wind.learn = 0;
     range.sensing_range_m = 50;
     range.tolerance_m = 5;
+    errors = range;
+    errors.bias_sd_m = 1;
+    errors.scale_sd = 0.1f;
     struct mh_acoustic_config acoustic, groups, plain;
     mh_acoustic_config_default(&acoustic, 40);
     groups = plain = acoustic;
     mh_group_config_default(&groups.group, MH_GROUP_MEMBERS);
     plain.separation = MH_SEPARATION_DECOMPOSITION;
     plain.filtered = false;
-    const void *const configs[] = {&range, &range, &pftl,     &msl,      &centroid, &gas,   &gas,
-                                   &gas,   &gas,   &gas_wind, &acoustic, &groups,   &plain, &plain};
+#endif
+    const void *const configs[] = {FLOAT_ONLY(&range),
+                                   FLOAT_ONLY(&errors),
+                                   &pftl,
+                                   FLOAT_ONLY(&msl),
+                                   &centroid,
+                                   FLOAT_ONLY(&gas),
+                                   FLOAT_ONLY(&gas),
+                                   FLOAT_ONLY(&gas),
+                                   FLOAT_ONLY(&gas),
+                                   FLOAT_ONLY(&gas_wind),
+                                   FLOAT_ONLY(&acoustic),
+                                   FLOAT_ONLY(&groups),
+                                   FLOAT_ONLY(&plain),
+                                   FLOAT_ONLY(&plain),
+                                   &luo};
     struct input input = {data, size};
     const uint8_t choice = byte(&input);
-    const uint8_t which = choice % (sizeof trackers / sizeof trackers[0]);
+    const uint8_t which = choice % 64 % (sizeof trackers / sizeof trackers[0]);
     const struct mh_tracker *const tracker = trackers[which];
-    if (which == 1) {
-        range.bias_sd_m = 1;
-        range.scale_sd = 0.1f;
+    if (tracker == NULL) {
+        return 0;
     }
-    pftl.particles = msl.particles = (uint16_t)(choice & 128 ? 3 : 50);
+    pftl.particles = (uint16_t)(choice & 128 ? 3 : 50);
+#if !MH_REAL_FIXED
+    msl.particles = pftl.particles;
+#endif
     uint8_t track[MH_TRACK_BYTES_MAX + 8];
     memset(track, 0, sizeof track);
     size_t length = byte(&input);
@@ -148,15 +211,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                      ? mh_place_from_offset(&estimate.origin, estimate.position)
                      : (struct mh_place){0, 0, 0};
         for (uint8_t k = 0; k < count; k++) {
-            const struct mh_vec2 off = {(mh_real)byte(&input) - 128, (mh_real)byte(&input) - 128};
             set[k].node = k;
-            set[k].place = mh_place_from_offset(&centre, off);
+            set[k].place.x_mm = beside(centre.x_mm, &input, choice & 64);
+            set[k].place.y_mm = beside(centre.y_mm, &input, choice & 64);
             set[k].time = now;
-            if (tracker == &mh_tracker_gas_wind && k < 2) { /* the first node has an anemometer */
+            if (which == WITH_WIND && k < 2) { /* the first node has an anemometer */
                 set[k].node = 0;
                 set[k].target = k == 0 ? MH_TARGET_WIND_X : MH_TARGET_WIND_Y;
             }
-            set[k].value = ((mh_q20)byte(&input) - 20) * MH_Q20_ONE;
+            set[k].value = choice & 64 ? any(&input) : ((mh_q20)byte(&input) - 20) * MH_Q20_ONE;
+            if (tracker == &mh_tracker_luo) {
+                set[k].increment = set[k].value;
+                set[k].flags = MH_MEASUREMENT_HAS_INCREMENT;
+            }
         }
         if (tracker->among != NULL && what & 16) {
             meet(tracker, &state, &input, track, length);

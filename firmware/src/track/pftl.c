@@ -81,18 +81,28 @@ static bool usable(const struct mh_pftl *pftl, const struct mh_measurement *m)
     return mh_within(mh_q20_to_real(m->value), -beyond, pftl->config.sensing_range_m + beyond);
 }
 
-/* The mean place of the n >= 1 nodes whose ranges are usable. */
-static struct mh_vec2 centre_of(const struct search *search, uint16_t n)
+/* The mean place of the n >= 1 nodes whose ranges are usable, relative to `origin`; infinite where that has no room. */
+static struct mh_vec2 centre_of(const struct search *search, uint16_t n, const struct mh_place *origin)
 {
+#if MH_REAL_FIXED /* in the integers of places: far ones among them, relative to the origin, would be of no size */
+    struct mh_place_sum sum = {0, 0};
+    for (size_t j = 0; j < search->count; j++) {
+        if (usable(search->pftl, &search->measurements[j])) {
+            mh_place_sum_add(&sum, &search->measurements[j].place, origin);
+        }
+    }
+    return mh_place_sum_mean(&sum, n);
+#else
     struct mh_vec2 centre = {0, 0};
     for (size_t j = 0; j < search->count; j++) {
         if (usable(search->pftl, &search->measurements[j])) {
-            const struct mh_vec2 at = mh_place_relative(&search->measurements[j].place, &search->pftl->origin);
+            const struct mh_vec2 at = mh_place_relative(&search->measurements[j].place, origin);
             centre.x += mh_div(at.x, mh_real_from_int(n));
             centre.y += mh_div(at.y, mh_real_from_int(n));
         }
     }
     return centre;
+#endif
 }
 
 /* Draw particles from, .. in the region and sum their squared residuals: of sums that are to be compared with `least`; no more once all are above the bound, if
@@ -183,10 +193,13 @@ static enum mh_status localise(struct search *search, struct mh_vec2 expected, u
             region->outer += wider;
             region->half_angle = mh_min(MH_PI, mh_mul(mh_real_from_int(1 + level), level_0.half_angle));
         } else {
-            region->apex = centre_of(search, n);
+            region->apex = centre_of(search, n, &pftl->origin);
             region->inner = 0;
             region->outer = pftl->config.sensing_range_m;
             region->half_angle = MH_PI;
+        }
+        if (!mh_vec2_finite(region->apex)) {
+            return MH_ERR_NOT_FINITE;
         }
         const bool last = level == LEVELS;
         const mh_particle_weight bound = last || pftl->config.literal ? MH_PARTICLE_SUM_MAX : fit(search, n);
@@ -257,9 +270,13 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
             pftl->time = time;
             return MH_NONE;
         }
-        pftl->origin = measurements[0].place;
-        pftl->origin.z_mm = 0;
-        answer.position = centre_of(&search, n);
+        struct mh_place origin = measurements[0].place;
+        origin.z_mm = 0;
+        answer.position = centre_of(&search, n, &origin);
+        if (!mh_vec2_finite(answer.position)) {
+            return MH_ERR_NOT_FINITE;
+        }
+        pftl->origin = origin;
         const mh_real radius = pftl->config.sensing_range_m;
         answer.covariance.xx = answer.covariance.yy = mh_wide_div(mh_wide_mul(radius, radius), 4 * mh_real_from_int(n));
         answer.flags = MH_ESTIMATE_STARTED;

@@ -496,6 +496,24 @@ static void ends_where_its_coordinates_do(void)
     TEST_ASSERT_EQUAL_MEMORY(&before, &pftl, sizeof pftl);
     TEST_ASSERT_EQUAL_MEMORY(&last, &estimate, sizeof estimate);
 }
+
+/* the mean place of nodes: exact while it is within 32.7 km of the first, refused beyond */
+static void begins_at_the_centroid_of_far_nodes(void)
+{
+    const struct mh_pftl_config config = nominal();
+    begin(&config);
+    for (size_t i = 0; i < 3; i++) {
+        put(i, 0, 0, 3);
+    }
+    set[1].place.y_mm = set[2].place.y_mm += 90000000;
+    const struct mh_pftl before = pftl;
+    TEST_ASSERT_EQUAL_INT(MH_ERR_NOT_FINITE, step(0, 3));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &pftl, sizeof pftl);
+    set[2].place.y_mm = set[0].place.y_mm;
+    TEST_ASSERT_EQUAL_INT(MH_OK, step(0, 3));
+    TEST_ASSERT_EQUAL_INT32(0, estimate.position.x);
+    TEST_ASSERT_EQUAL_INT32(R(30000.0f), estimate.position.y);
+}
 #endif
 
 int main(void)
@@ -521,6 +539,7 @@ int main(void)
 #if MH_REAL_FIXED
     RUN_TEST(refuses_what_its_format_cannot_hold);
     RUN_TEST(ends_where_its_coordinates_do);
+    RUN_TEST(begins_at_the_centroid_of_far_nodes);
 #endif
     port_exit(UNITY_END() > 0);
     return 0;
