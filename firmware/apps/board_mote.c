@@ -270,6 +270,7 @@ static void begin_lock_step(void)
 {
     if (self.free) {
         self.free = false;
+        port_watchdog_stop();
         self.board->mote.sensor = NULL;
         self.board->mote.head = NULL;
         self.board->mote.clock = NULL;

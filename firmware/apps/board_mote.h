@@ -7,7 +7,8 @@
  * IDENTIFY, CONFIGURE, START and STOP end that until the board is reset: then the clock is at the other end of the line, too (lock step). A mote so configured has a
  * sensor, a head's configuration and a clock only if CONFIGURE has named them.
  *
- * At the start the image recomputes known answers; if they are not as known the mote does not run: START is answered with MH_ERR_CORRUPT. After each event the stack's guard is looked at, and the watchdog is fed. A
+ * At the start the image recomputes known answers; if they are not as known the mote does not run: START is answered with MH_ERR_CORRUPT. After each event the stack's guard is looked at, and the watchdog is fed, which runs while
+ * the mote runs free: in lock step nobody waits for an event that takes long. A
  * fault is told at the next start, as text and by FAULT.
  *
  * Memory: 134 bytes for a message besides the mote's, and on an ATmega128 some 60 more. */

@@ -8,7 +8,7 @@
 /* 100 g, a second old, D = 1 m2/s, seen from 1 m: 100 / (4 pi) e^(-1/4) */
 static bool knows_puff(void)
 {
-    static const struct mh_puff puff = {{0, 0}, MH_REAL(1.0f), MH_REAL(100.0f)};
+    const struct mh_puff puff = {{0, 0}, MH_REAL(1.0f), MH_REAL(100.0f)};
     const struct mh_vec2 point = {MH_REAL(1.0f), 0};
     return near(mh_puff_concentration(&puff, MH_REAL(1.0f), point, NULL), MH_REAL(6.1974996f));
 }
@@ -16,15 +16,17 @@ static bool knows_puff(void)
 /* x = 2, y = 3, x + y = 6: least squares (7/3, 10/3) */
 static bool knows_least_squares(void)
 {
-    static const mh_real rows[3][3] = {{MH_REAL(1.0f), 0, MH_REAL(2.0f)},
-                                       {0, MH_REAL(1.0f), MH_REAL(3.0f)},
-                                       {MH_REAL(1.0f), MH_REAL(1.0f), MH_REAL(6.0f)}};
+    FLASH mh_real rows[3][3] = {{MH_REAL(1.0f), 0, MH_REAL(2.0f)},
+                                {0, MH_REAL(1.0f), MH_REAL(3.0f)},
+                                {MH_REAL(1.0f), MH_REAL(1.0f), MH_REAL(6.0f)}};
     struct mh_least_squares problem;
     mh_real z[2];
     enum mh_bound bound;
     mh_least_squares_begin(&problem, 2);
     for (uint8_t i = 0; i < 3; i++) {
-        if (mh_least_squares_add(&problem, rows[i], rows[i][2]) != MH_OK) {
+        mh_real row[3];
+        flash_read(row, rows[i], sizeof row);
+        if (mh_least_squares_add(&problem, row, row[2]) != MH_OK) {
             return false;
         }
     }

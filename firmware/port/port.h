@@ -94,6 +94,7 @@ void port_wait(void);
  *
  * FAMILY/watchdog*.c. Once started it resets the board when it is not fed for about two seconds. A board without one has empty functions. */
 void port_watchdog_start(void);
+void port_watchdog_stop(void); /* where that is possible: not on an nRF51 */
 void port_watchdog_feed(void);
 /* True if the last reset was the watchdog's; asked once. */
 bool port_watchdog_fired(void);

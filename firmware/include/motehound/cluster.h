@@ -59,8 +59,10 @@
 #define MH_CLUSTER_SEARCH 10       /* instants for which who heard it samples */
 #define MH_CLUSTER_SHUN_TIME 60000 /* ticks, of who has failed to take a track */
 
-/* A track on its way: number of members, their identifiers, what the tracker saves. */
-#define MH_CLUSTER_CARRIED_MAX (1 + 4 * MH_FORM_MEMBERS + MH_TRACK_BYTES_MAX)
+/* A track on its way: number of members, their identifiers, what the tracker saves. Nodes take no track with more members than they have room for, so
+ * `election.members` is at most the least MH_CLUSTER_MAX of the network. */
+#define MH_CLUSTER_CARRIED_MAX                                                                                         \
+    (1 + 4 * (MH_CLUSTER_MAX < MH_FORM_MEMBERS ? MH_CLUSTER_MAX : MH_FORM_MEMBERS) + MH_TRACK_BYTES_MAX)
 
 struct mh_cluster_config {
     struct mh_election_config

@@ -6,6 +6,8 @@
 
 void port_watchdog_start(void) { wdt_enable(WDTO_2S); }
 
+void port_watchdog_stop(void) { wdt_disable(); }
+
 void port_watchdog_feed(void) { wdt_reset(); }
 
 bool port_watchdog_fired(void)

@@ -17,6 +17,8 @@ void port_watchdog_start(void)
     TASK_START = 1;
 }
 
+void port_watchdog_stop(void) {}
+
 void port_watchdog_feed(void) { RELOAD_REQUEST = 0x6E524635u; }
 
 bool port_watchdog_fired(void)

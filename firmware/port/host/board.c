@@ -54,6 +54,8 @@ void port_wait(void) { (void)readable(10); }
 
 void port_watchdog_start(void) {}
 
+void port_watchdog_stop(void) {}
+
 void port_watchdog_feed(void) {}
 
 bool port_watchdog_fired(void) { return false; }

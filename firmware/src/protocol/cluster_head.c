@@ -500,16 +500,22 @@ static void miss(struct mh_cluster_node *c)
     }
 }
 
-static void elect(struct mh_cluster_node *c, const struct mh_estimate *estimate,
-                  const struct mh_measurement *measurements, size_t measured)
+/* The next cluster, if one is due -> c->next. A function of its own: its candidates are off the stack before anything is sent. */
+static enum mh_status choose_next(struct mh_cluster_node *c, const struct mh_estimate *estimate,
+                                  const struct mh_measurement *measurements, size_t measured)
 {
     struct mh_candidate candidates[MH_NEIGHBOURS_MAX + 1];
     const size_t found = candidates_of(c, measurements, measured, candidates);
     const struct mh_place about = mh_place_from_offset(&estimate->origin, estimate->position);
     c->next = c->cluster;
-    const enum mh_status status = c->afresh ? mh_elect_first(&c->config->election, &about, candidates, found, &c->next)
-                                            : mh_elect(&c->config->election, estimate, candidates, found, &c->next);
-    if (status != MH_OK) {
+    return c->afresh ? mh_elect_first(&c->config->election, &about, candidates, found, &c->next)
+                     : mh_elect(&c->config->election, estimate, candidates, found, &c->next);
+}
+
+static void elect(struct mh_cluster_node *c, const struct mh_estimate *estimate,
+                  const struct mh_measurement *measurements, size_t measured)
+{
+    if (choose_next(c, estimate, measurements, measured) != MH_OK) {
         return;
     }
     if (c->next.head.id != c->node->id) {
