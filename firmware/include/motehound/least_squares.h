@@ -9,11 +9,11 @@
  *
  * Cost: one row of n unknowns takes n square roots, n divisions and about 2 n (n + 3) multiplications; a solution n divisions.
  *
- * Scaling and overflow, in fixed point. Rows come in and unknowns go out as mh_real (Q15.16). The factor, the right sides and the residual
- * share one scale: they begin with 24 fractional bits, MH_LEAST_SQUARES_GUARD_BITS beyond those of a row, and all give up one whenever one
- * of them passes 2^29, so that the largest keeps 28 significant bits whatever the number of rows; 65,535 rows of 32,767 still have 6
- * fractional bits. A turn keeps the length of a column, which is below sqrt(6) 2^29: nothing wraps. Every sum of products is rounded once, to nearest.
- * An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. */
+ * Scaling and overflow, in fixed point. Rows come in and unknowns go out as mh_real (Q15.16). The factor and its right sides share one
+ * scale: they begin with 24 fractional bits, MH_LEAST_SQUARES_GUARD_BITS beyond those of a row, and all give up one whenever one of them
+ * passes 2^29, so that the largest keeps 28 significant bits whatever the number of rows; 65,535 rows of 32,767 still have 6 fractional bits.
+ * A turn keeps the length of a column, which is below sqrt(5) 2^29: nothing wraps. Every sum of products is rounded once, to
+ * nearest. An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. The residual, which would cost a third more, is left out. */
 #ifndef MOTEHOUND_LEAST_SQUARES_H
 #define MOTEHOUND_LEAST_SQUARES_H
 
@@ -37,9 +37,10 @@ struct mh_least_squares {
     uint8_t unknowns;
     uint16_t rows;                                                       /* taken so far, saturating */
     mh_real r[MH_LEAST_SQUARES_UNKNOWNS][MH_LEAST_SQUARES_UNKNOWNS + 1]; /* upper triangle R; column `unknowns`: d */
-    mh_real residual;                                                    /* |A z - b| at the free minimiser */
 #if MH_REAL_FIXED
-    int8_t scale; /* r and residual are held 2^scale times as large */
+    int8_t scale; /* r is held 2^scale times as large */
+#else
+    mh_real residual; /* |A z - b| at the free minimiser */
 #endif
 };
 

@@ -54,6 +54,9 @@ struct mh_puff_answer {
 struct mh_puff_linear {
     mh_real diffusion;
     struct mh_puff_sample reference;
+#if MH_REAL_FIXED
+    mh_real logarithm; /* of the reference's concentration as it comes, 20 fractional bits taken for 16 */
+#endif
     struct mh_least_squares equations; /* unknowns: position relative to the reference, age */
 };
 

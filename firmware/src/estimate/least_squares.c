@@ -10,7 +10,6 @@ static void shrink(struct mh_least_squares *problem)
             problem->r[i][j] /= 2;
         }
     }
-    problem->residual /= 2;
     problem->scale--;
 }
 
@@ -18,10 +17,10 @@ static void shrink(struct mh_least_squares *problem)
 static void bring_to_scale(struct mh_least_squares *problem, mh_real *row)
 {
     const uint8_t n = problem->unknowns;
-    mh_real entry = 0, held = problem->residual;
+    mh_real entry = 0, held = 0;
     for (uint8_t j = 0; j <= n; j++) {
         entry = mh_max(entry, mh_abs(row[j]));
-        for (uint8_t i = 0; i < n; i++) {
+        for (uint8_t i = 0; i <= j && i < n; i++) {
             held = mh_max(held, mh_abs(problem->r[i][j]));
         }
     }
@@ -32,19 +31,21 @@ static void bring_to_scale(struct mh_least_squares *problem, mh_real *row)
     for (; entry > LARGEST; entry /= 2) {
         fits--;
     }
-    for (; fits < problem->scale && entry <= LARGEST / 2; entry *= 2) {
+    for (; fits < problem->scale && entry <= LARGEST / 2; entry += entry) {
         fits++;
     }
     while (problem->scale > fits) {
         shrink(problem);
     }
+    int16_t times = 1, parts = 1;
+    for (int8_t k = 0; k < problem->scale; k++) {
+        times += times;
+    }
+    for (int8_t k = 0; k > problem->scale; k--) {
+        parts += parts;
+    }
     for (uint8_t j = 0; j <= n; j++) {
-        for (int8_t k = 0; k < problem->scale; k++) {
-            row[j] *= 2;
-        }
-        for (int8_t k = 0; k > problem->scale; k--) {
-            row[j] /= 2;
-        }
+        row[j] = parts == 1 ? row[j] * times : row[j] / parts;
     }
 }
 #endif
@@ -87,7 +88,9 @@ enum mh_status mh_least_squares_add(struct mh_least_squares *problem, const mh_r
             rest[j] = mh_turned(c, rest[j], -s, kept);
         }
     }
+#if !MH_REAL_FIXED
     problem->residual = mh_hypot(problem->residual, rest[n]);
+#endif
     if (problem->rows < UINT16_MAX) {
         problem->rows++;
     }

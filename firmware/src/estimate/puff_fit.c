@@ -5,19 +5,15 @@
 #define DIFFUSION_MIN MH_REAL(0.01f)
 #define DIFFUSION_MAX MH_REAL(500.0f)
 static mh_real in_grams(mh_concentration concentration) { return mh_q20_to_real(concentration); }
-/* mh_log takes the 20 fractional bits for 16, which puts the same constant on both */
-static mh_real log_ratio(mh_concentration over, mh_concentration under)
-{
-    return mh_log(mh_real_from_bits(over)) - mh_log(mh_real_from_bits(under));
-}
 static bool is_finite(mh_concentration concentration) { return concentration < INT32_MAX; }
+static mh_real half(mh_wide a) { return mh_wide_to_real(a >> 1); }
 #else
 #define EXPONENT_MAX 20.0f
 #define DIFFUSION_MIN MH_REAL_MIN
 #define DIFFUSION_MAX MH_REAL_MAX
 static mh_real in_grams(mh_concentration concentration) { return concentration; }
-static mh_real log_ratio(mh_concentration over, mh_concentration under) { return mh_log(over / under); }
 static bool is_finite(mh_concentration concentration) { return mh_finite(concentration); }
+static mh_real half(mh_wide a) { return a / 2; }
 #endif
 
 static enum mh_status check(const struct mh_puff_sample *sample)
@@ -55,6 +51,9 @@ enum mh_status mh_puff_linear_begin(struct mh_puff_linear *fit, mh_real diffusio
     }
     fit->diffusion = diffusion;
     fit->reference = *reference;
+#if MH_REAL_FIXED
+    fit->logarithm = mh_log(mh_real_from_bits(reference->concentration));
+#endif
     mh_least_squares_begin(&fit->equations, 3);
     return MH_OK;
 }
@@ -68,9 +67,13 @@ enum mh_status mh_puff_linear_add(struct mh_puff_linear *fit, const struct mh_pu
         return status;
     }
     const struct mh_vec2 away = mh_vec2_between(fit->reference.position, sample->position);
-    const mh_real logarithm = log_ratio(fit->reference.concentration, sample->concentration);
+#if MH_REAL_FIXED
+    const mh_real logarithm = fit->logarithm - mh_log(mh_real_from_bits(sample->concentration));
+#else
+    const mh_real logarithm = mh_log(fit->reference.concentration / sample->concentration);
+#endif
     const mh_real row[3] = {away.x, away.y, mh_mul(2 * fit->diffusion, logarithm)};
-    const mh_real right = mh_wide_to_real(mh_vec2_square(away) / 2);
+    const mh_real right = half(mh_vec2_square(away));
     return mh_finite(right) ? mh_least_squares_add(&fit->equations, row, right) : MH_ERR_RANGE;
 }
 
