@@ -113,6 +113,7 @@ set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
 set(MOTEHOUND_FIXED_POINT_BENCHES
   centroid
   known
+  luo
   pftl
   sound_cases
   sound_three
