@@ -349,11 +349,12 @@ static struct mh_vec2 least_squares(const struct mh_circle c[3])
 #if MH_REAL_FIXED
         p.x += one.x / 3;
         p.y += one.y / 3;
-    }
 #else
         p.x += one.x;
         p.y += one.y;
+#endif
     }
+#if !MH_REAL_FIXED
     p.x /= 3;
     p.y /= 3;
 #endif
