@@ -490,7 +490,6 @@ static int check_mote(struct boards *boards, const struct board *board)
 static int choose_image(struct boards *boards, struct board *board)
 {
     const struct host_mote *what = &board->what;
-    const bool is_fixed = strstr(what->board, "-fixed") != NULL;
     char *path = board->result.image, names[2][110];
     if (what->head) {
         snprintf(names[0], sizeof names[0], "cluster_head_%.40s", what->head->tracker->name);
@@ -504,7 +503,7 @@ static int choose_image(struct boards *boards, struct board *board)
     }
     for (int i = 1; i >= 0; i--) {
         snprintf(path, BOARD_IMAGE_MAX, "%.250s/%.30s%s/%.100s", boards->images, what->board,
-                 MH_REAL_FIXED && !is_fixed ? "-fixed" : "", names[i]);
+                 MH_REAL_FIXED && !strstr(what->board, "-fixed") ? "-fixed" : "", names[i]);
         if (access(path, R_OK) == 0) {
             return 0;
         }

@@ -19,7 +19,7 @@ for board in atmega128 cortex-m0; do
 done
 mkdir -p images
 ln -s "$APPS" "images/host$ARITHMETIC"
-export MOTEHOUND_IMAGES=$PWD/images LSAN_OPTIONS=suppressions=$PWD/suppressions
+export MOTEHOUND_IMAGES=$PWD/images LSAN_OPTIONS=suppressions=$PWD/suppressions:print_suppressions=0
 echo leak:libsimavr >suppressions
 
 # close NATIVE EMULATED: as many estimates at the same times by the same heads, all within 1e-3 m; in fixed point the same bytes; as many frames

@@ -282,6 +282,19 @@ def statistics(results: Output) -> list[dict[str, str]]:
     return rows
 
 
+def boards(results: Output) -> list[dict[str, str]]:
+    """How the emulated boards did, if motes lived on some."""
+    rows = []
+    for board in results.summary.get("boards", []):
+        mean, longest = (number(1e3 * board[key] / board["rate_hz"]) for key in ("cycles_mean", "cycles_max"))
+        whole = {key: f"{board[key]:,}" for key in ("events", "late", "overlapped")}
+        ram = f"{board['ram_free_b']:,} of {board['ram_b']:,} B" if "ram_b" in board else "–"
+        kind = f"{board['board']}, {board['arithmetic']}"
+        image = board["image"].rpartition("/")[2]
+        rows.append({"node": str(board["node"]), "kind": kind, "image": image, "mean": mean, "longest": longest, "ram": ram, **whole})
+    return rows
+
+
 def facts(results: Output, varied: str) -> list[tuple[str, str]]:
     """What was run, in words; without the key that a sweep varies."""
     runs = len(results.runs["run"])
@@ -411,6 +424,7 @@ def render(found: Output | Sweep) -> str:
         lost_m=number(target_figures.LOST_M),
         network=network_pictures(middle),
         statistics=statistics(middle),
+        boards=boards(middle),
         has_pooled=bool(middle.summary.get("pooled")),
         scenario=json.dumps(middle.scenario.sections, indent=2) if middle.scenario else "",
         as_image=as_image,

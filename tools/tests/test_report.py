@@ -85,6 +85,19 @@ def test_page_of_a_run(folder: Path) -> None:
     assert number(output.read(folder).statistic("position_rmse_m")) in page.text  # type: ignore[union-attr]
 
 
+def test_page_of_a_run_with_boards(folder: Path) -> None:
+    summary = json.loads((folder / "summary.json").read_text())
+    board = {"node": 17, "board": "atmega128", "image": "images/atmega128/sensor_node", "arithmetic": "fixed", "events": 174, "cycles_mean": 5864.0}
+    board |= {"cycles_max": 8110, "rate_hz": 7372800.0, "late": 0, "overlapped": 28, "ram_b": 4096, "ram_free_b": 2808}
+    summary["boards"] = [board, {key: board[key] for key in board if not key.startswith("ram")}]
+    (folder / "summary.json").write_text(json.dumps(summary))
+    done = call("report", folder)
+    assert done.returncode == 0, done.stderr
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    for said in ("Emulated boards", "atmega128, fixed", "sensor_node", "174", number(8110 / 7372.8), "2,808 of 4,096 B"):
+        assert said in page.text
+
+
 def titles_of(folder: Path) -> dict[str, str]:
     done = call("report", folder)
     assert done.returncode == 0, done.stderr

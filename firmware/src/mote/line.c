@@ -101,7 +101,7 @@ void mh_line_u32(struct mh_line_fields *fields, uint32_t *value)
     if (fields->to) {
         uint8_t bytes[FIELD_BYTES], *at = bytes;
         mh_put_u32(&at, *value);
-        for (uint8_t i = 0; i < FIELD_BYTES; i++) {
+        for (int i = 0; i < FIELD_BYTES; i++) {
             mh_line_byte(fields->to, bytes[i]);
         }
     } else if (fields->left < FIELD_BYTES) {
