@@ -2,6 +2,8 @@
 
 #if MH_REAL_FIXED
 
+#include <stddef.h>
+
 #define Q30(constant) ((int32_t)((constant)*1073741824.0f))
 
 /* The upper half of a b + *low, whose lower half goes to *low. */
@@ -317,7 +319,7 @@ mh_real mh_exp(mh_real a)
     int32_t sum = Q30(1.0f / 5040);
     static const int32_t coefficients[] = {Q30(1.0f / 720), Q30(1.0f / 120), Q30(1.0f / 24),
                                            Q30(1.0f / 6),   Q30(0.5f),       Q30(1.0f)};
-    for (uint8_t i = 0; i < sizeof coefficients / sizeof coefficients[0]; i++) {
+    for (size_t i = 0; i < sizeof coefficients / sizeof coefficients[0]; i++) {
         sum = coefficients[i] + mul30(x, sum);
     }
     const uint32_t power = (uint32_t)(Q30(1.0f) + mul30(x, sum)); /* below 2^30.51 */
@@ -346,7 +348,7 @@ mh_real mh_log(mh_real a)
     const int32_t series =
         Q30(1.0f) + mul30(square, Q30(1.0f / 3) + mul30(square, Q30(1.0f / 5) + mul30(square, Q30(1.0f / 7))));
     const int64_t sum = 2 * (int64_t)mul30(t, series) + (int64_t)exponent * Q30(0.693147181f);
-    return (mh_real)((sum + (1l << 13)) >> 14);
+    return (mh_real)((sum + ((int64_t)1 << 13)) >> 14);
 }
 
 /* By a polynomial of the smaller over the larger coordinate (Hastings). */
@@ -360,7 +362,7 @@ mh_real mh_atan2(mh_real y, mh_real x)
     int32_t sum = Q30(-0.01172120f);
     static const int32_t coefficients[] = {Q30(0.05265332f), Q30(-0.11643287f), Q30(0.19354346f), Q30(-0.33262347f),
                                            Q30(0.99997726f)};
-    for (uint8_t i = 0; i < sizeof coefficients / sizeof coefficients[0]; i++) {
+    for (size_t i = 0; i < sizeof coefficients / sizeof coefficients[0]; i++) {
         sum = coefficients[i] + mul30(square, sum);
     }
     int32_t angle = mul30(z, sum) >> 14;
