@@ -6,6 +6,10 @@
 #ifndef MOTEHOUND_BACKGROUND_H
 #define MOTEHOUND_BACKGROUND_H
 
+#if MH_REAL_FIXED
+#error "motehound/background.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/real.h"
 #include "motehound/status.h"
 

@@ -32,6 +32,10 @@
 #ifndef MOTEHOUND_CV_H
 #define MOTEHOUND_CV_H
 
+#if MH_REAL_FIXED
+#error "motehound/cv.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/gaussian.h"
 #include "motehound/summary.h"
 #include "motehound/tracker.h"

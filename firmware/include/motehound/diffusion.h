@@ -24,6 +24,10 @@
 #ifndef MOTEHOUND_DIFFUSION_H
 #define MOTEHOUND_DIFFUSION_H
 
+#if MH_REAL_FIXED
+#error "motehound/diffusion.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/tracker.h"
 #include "motehound/trail_fit.h"
 

@@ -11,6 +11,10 @@
 #ifndef MOTEHOUND_EKF_H
 #define MOTEHOUND_EKF_H
 
+#if MH_REAL_FIXED
+#error "motehound/ekf.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/gaussian.h"
 #include "motehound/observations.h"
 #include "motehound/transition.h"

@@ -20,6 +20,10 @@
 #ifndef MOTEHOUND_FUSION_CENTRE_H
 #define MOTEHOUND_FUSION_CENTRE_H
 
+#if MH_REAL_FIXED
+#error "motehound/fusion_centre.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/centre.h"
 #include "motehound/summary.h"
 #include "motehound/white_acceleration.h"

@@ -28,6 +28,10 @@
 #ifndef MOTEHOUND_GAS_H
 #define MOTEHOUND_GAS_H
 
+#if MH_REAL_FIXED
+#error "motehound/gas.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/gaussian.h"
 #include "motehound/plume.h"
 #include "motehound/tracker.h"

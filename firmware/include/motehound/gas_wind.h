@@ -13,6 +13,10 @@
 #ifndef MOTEHOUND_GAS_WIND_H
 #define MOTEHOUND_GAS_WIND_H
 
+#if MH_REAL_FIXED
+#error "motehound/gas_wind.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/background.h"
 #include "motehound/plume_regression.h"
 #include "motehound/tracker.h"

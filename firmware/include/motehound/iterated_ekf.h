@@ -16,6 +16,10 @@
 #ifndef MOTEHOUND_ITERATED_EKF_H
 #define MOTEHOUND_ITERATED_EKF_H
 
+#if MH_REAL_FIXED
+#error "motehound/iterated_ekf.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/gaussian.h"
 #include "motehound/observations.h"
 

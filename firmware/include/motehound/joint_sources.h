@@ -8,6 +8,10 @@
 #ifndef MOTEHOUND_JOINT_SOURCES_H
 #define MOTEHOUND_JOINT_SOURCES_H
 
+#if MH_REAL_FIXED
+#error "motehound/joint_sources.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/config.h"
 #include "motehound/sound_fix.h"
 

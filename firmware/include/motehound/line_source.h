@@ -6,6 +6,10 @@
 #ifndef MOTEHOUND_LINE_SOURCE_H
 #define MOTEHOUND_LINE_SOURCE_H
 
+#if MH_REAL_FIXED
+#error "motehound/line_source.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/geometry.h"
 
 /* A straight piece of the path, seen at some instant. */

@@ -17,6 +17,10 @@
 #ifndef MOTEHOUND_MSL_H
 #define MOTEHOUND_MSL_H
 
+#if MH_REAL_FIXED
+#error "motehound/msl.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/particles.h"
 #include "motehound/tracker.h"
 

@@ -10,6 +10,10 @@
 #ifndef MOTEHOUND_MULTILATERATION_H
 #define MOTEHOUND_MULTILATERATION_H
 
+#if MH_REAL_FIXED
+#error "motehound/multilateration.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/measurement.h"
 #include "motehound/status.h"
 

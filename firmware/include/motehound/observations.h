@@ -5,6 +5,10 @@
 #ifndef MOTEHOUND_OBSERVATIONS_H
 #define MOTEHOUND_OBSERVATIONS_H
 
+#if MH_REAL_FIXED
+#error "motehound/observations.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/real.h"
 #include "motehound/status.h"
 

@@ -10,6 +10,10 @@
 #ifndef MOTEHOUND_PLUME_H
 #define MOTEHOUND_PLUME_H
 
+#if MH_REAL_FIXED
+#error "motehound/plume.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/geometry.h"
 #include "motehound/status.h"
 

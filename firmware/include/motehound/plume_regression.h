@@ -12,6 +12,10 @@
 #ifndef MOTEHOUND_PLUME_REGRESSION_H
 #define MOTEHOUND_PLUME_REGRESSION_H
 
+#if MH_REAL_FIXED
+#error "motehound/plume_regression.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/config.h"
 #include "motehound/plume.h"
 

@@ -11,6 +11,10 @@
 #ifndef MOTEHOUND_PLUME_SEARCH_H
 #define MOTEHOUND_PLUME_SEARCH_H
 
+#if MH_REAL_FIXED
+#error "motehound/plume_search.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/config.h"
 #include "motehound/plume.h"
 

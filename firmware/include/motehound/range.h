@@ -35,6 +35,10 @@
 #ifndef MOTEHOUND_RANGE_H
 #define MOTEHOUND_RANGE_H
 
+#if MH_REAL_FIXED
+#error "motehound/range.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/followed.h"
 #include "motehound/kalman.h"
 #include "motehound/tracker.h"

@@ -6,6 +6,10 @@
 #ifndef MOTEHOUND_RANGE_FIX_H
 #define MOTEHOUND_RANGE_FIX_H
 
+#if MH_REAL_FIXED
+#error "motehound/range_fix.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/measurement.h"
 #include "motehound/status.h"
 

@@ -2,6 +2,10 @@
 #ifndef MOTEHOUND_RANGE_MODEL_H
 #define MOTEHOUND_RANGE_MODEL_H
 
+#if MH_REAL_FIXED
+#error "motehound/range_model.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/geometry.h"
 #include "motehound/status.h"
 

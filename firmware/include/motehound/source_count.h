@@ -15,6 +15,10 @@
 #ifndef MOTEHOUND_SOURCE_COUNT_H
 #define MOTEHOUND_SOURCE_COUNT_H
 
+#if MH_REAL_FIXED
+#error "motehound/source_count.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/config.h"
 #include "motehound/sound_fix.h"
 

@@ -14,6 +14,10 @@
 #ifndef MOTEHOUND_SUMMARY_H
 #define MOTEHOUND_SUMMARY_H
 
+#if MH_REAL_FIXED
+#error "motehound/summary.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/fusion.h"
 #include "motehound/ticks.h"
 

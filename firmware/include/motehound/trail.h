@@ -6,6 +6,10 @@
 #ifndef MOTEHOUND_TRAIL_H
 #define MOTEHOUND_TRAIL_H
 
+#if MH_REAL_FIXED
+#error "motehound/trail.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/config.h"
 #include "motehound/line_source.h"
 #include "motehound/ticks.h"

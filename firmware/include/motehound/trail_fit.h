@@ -12,6 +12,10 @@
 #ifndef MOTEHOUND_TRAIL_FIT_H
 #define MOTEHOUND_TRAIL_FIT_H
 
+#if MH_REAL_FIXED
+#error "motehound/trail_fit.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/matrix.h"
 #include "motehound/status.h"
 #include "motehound/trail.h"

@@ -3,6 +3,10 @@
 #ifndef MOTEHOUND_TRANSITION_H
 #define MOTEHOUND_TRANSITION_H
 
+#if MH_REAL_FIXED
+#error "motehound/transition.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/real.h"
 #include "motehound/status.h"
 

@@ -23,6 +23,10 @@
 #ifndef MOTEHOUND_UKF_H
 #define MOTEHOUND_UKF_H
 
+#if MH_REAL_FIXED
+#error "motehound/ukf.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/gaussian.h"
 #include "motehound/observations.h"
 #include "motehound/transition.h"

@@ -6,6 +6,10 @@
 #ifndef MOTEHOUND_WHITE_ACCELERATION_H
 #define MOTEHOUND_WHITE_ACCELERATION_H
 
+#if MH_REAL_FIXED
+#error "motehound/white_acceleration.h needs MH_REAL=float: docs/fixed_point.md"
+#endif
+
 #include "motehound/geometry.h"
 #include "motehound/ticks.h"
 
