@@ -346,7 +346,7 @@ static struct mh_vec2 least_squares(const struct mh_circle c[3])
     struct mh_vec2 p = {0, 0};
     for (int i = 0; i < 3; i++) {
         const struct mh_vec2 one = mh_two_circles(&c[i], &c[(i + 1) % 3]);
-#if MH_REAL_FIXED
+#if MH_REAL_FIXED /* the sum may be too large */
         p.x += one.x / 3;
         p.y += one.y / 3;
 #else
