@@ -112,6 +112,8 @@ set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
 # workloads of tests/bench
 set(MOTEHOUND_FIXED_POINT_BENCHES
   centroid
+  kalman
+  kalman_dense
   known
   luo
   pftl

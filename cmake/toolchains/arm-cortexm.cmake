@@ -23,7 +23,7 @@ else()
 endif()
 
 set(port ${CMAKE_CURRENT_LIST_DIR}/../../firmware/port/cortex-m)
-set(CMAKE_C_FLAGS_INIT "${cpu} --specs=nano.specs -ffunction-sections -fdata-sections -fstack-usage")
+set(CMAKE_C_FLAGS_INIT "${cpu} --specs=nano.specs -ffunction-sections -fdata-sections")
 set(CMAKE_EXE_LINKER_FLAGS_INIT
   "-nostartfiles --specs=nosys.specs -L${port} -T${port}/${MOTEHOUND_MACHINE}.ld -Wl,--gc-sections -Wl,--fatal-warnings")
 set(CMAKE_CROSSCOMPILING_EMULATOR

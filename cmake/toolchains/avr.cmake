@@ -5,7 +5,7 @@ set(CMAKE_C_COMPILER avr-gcc)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 set(MOTEHOUND_PORT avr)
 
-set(CMAKE_C_FLAGS_INIT "-mmcu=atmega128 -DF_CPU=7372800UL -ffunction-sections -fdata-sections -fstack-usage -g")
+set(CMAKE_C_FLAGS_INIT "-mmcu=atmega128 -DF_CPU=7372800UL -ffunction-sections -fdata-sections")
 # the linker's own script takes RAM to be 64 KB: an image that does not fit must not link
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--gc-sections -Wl,--defsym=__DATA_REGION_LENGTH__=4096")
 set(CMAKE_CROSSCOMPILING_EMULATOR ${CMAKE_BINARY_DIR}/simavr_runner;-m;atmega128)

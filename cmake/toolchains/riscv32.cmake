@@ -7,7 +7,7 @@ set(MOTEHOUND_PORT riscv)
 
 set(port ${CMAKE_CURRENT_LIST_DIR}/../../firmware/port/riscv)
 set(CMAKE_C_FLAGS_INIT
-  "-march=rv32imac -mabi=ilp32 -mcmodel=medany --specs=picolibc.specs -ffunction-sections -fdata-sections -fstack-usage")
+  "-march=rv32imac -mabi=ilp32 -mcmodel=medany --specs=picolibc.specs -ffunction-sections -fdata-sections")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -T${port}/virt.ld -Wl,--gc-sections")
 set(CMAKE_CROSSCOMPILING_EMULATOR
   qemu-system-riscv32;-M;virt;-bios;none;-nographic;-monitor;none;-serial;none;-semihosting-config;enable=on,target=native;-kernel)
