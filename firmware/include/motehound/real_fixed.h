@@ -89,7 +89,11 @@ int32_t mh_real_times(mh_real a, int32_t b);
 /* The integer nearest to a. */
 static inline int32_t mh_real_round(mh_real a)
 {
-    return (a < 0 ? a - 32768 : a > INT32_MAX - 32768 ? INT32_MAX : a + 32768) / 65536;
+    return (a < -INT32_MAX + 32768  ? -INT32_MAX
+            : a < 0                 ? a - 32768
+            : a > INT32_MAX - 32768 ? INT32_MAX
+                                    : a + 32768) /
+           65536;
 }
 
 /* As the bits of an IEEE 754 binary32 (rounded to 24 significant bits; infinite as infinity), and back (saturated; NaN as infinite), in integers. */

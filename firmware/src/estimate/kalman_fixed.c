@@ -197,14 +197,14 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
             return MH_ERR_NOT_FINITE;
         }
         for (uint_fast8_t j = 0; j < n; j++) {
-            const mh_real *variance = filter->ud + MH_PACKED(first[j], first[j]);
+            uint_fast8_t diagonal = (uint_fast8_t)MH_PACKED(first[j], first[j]);
             mh_real sum = mh_scaled(Q[MH_PACKED(j, j)], next.exponent);
             for (uint_fast8_t k = first[j]; k < n; k++) {
-                scaled_W[j][k] = W[j][k] == 0 ? 0 : mh_mul(W[j][k], mh_scaled(*variance, (int8_t)-down));
+                scaled_W[j][k] = W[j][k] == 0 ? 0 : mh_mul(W[j][k], mh_scaled(filter->ud[diagonal], (int8_t)-down));
                 if (W[j][k] != 0) {
                     sum = mh_add(sum, mh_mul(W[j][k], scaled_W[j][k]));
                 }
-                variance += k + 2;
+                diagonal = (uint_fast8_t)(diagonal + k + 2);
             }
             next.ud[MH_PACKED(j, j)] = sum;
             largest = mh_max(largest, sum);

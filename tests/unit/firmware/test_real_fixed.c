@@ -151,6 +151,8 @@ static void test_conversions(void)
     TEST_ASSERT_EQUAL_INT32(0, mh_real_from_ieee(0));
     TEST_ASSERT_EQUAL_INT32(MH_Q20_ONE, mh_q20_from_real(mh_q20_to_real(MH_Q20_ONE)));
     TEST_ASSERT_EQUAL_INT32(-3, mh_real_round(MH_REAL(-2.6f)));
+    TEST_ASSERT_EQUAL_INT32(-32767, mh_real_round(-MH_REAL_INFINITE));
+    TEST_ASSERT_EQUAL_INT32(32767, mh_real_round(MH_REAL_INFINITE));
     TEST_ASSERT_EQUAL_INT32(MH_REAL(0.25f), mh_real_from_ratio(250, 1000));
     const struct mh_place origin = {1000, 2000, 3},
                           place = mh_place_from_offset(&origin, (struct mh_vec2){MH_REAL(-1.5f), MH_REAL(0.25f)});
