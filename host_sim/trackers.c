@@ -125,7 +125,7 @@ void centre_choose(const struct scenario *scenario, size_t count, struct centre_
 }
 
 #else
-#define FLOAT_ONLY(tracker, set_up) &tracker, set_up
+#define FLOAT_ONLY(tracker, set_up) &(tracker), (set_up)
 
 static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
                             const struct mh_region *region)
