@@ -112,11 +112,13 @@ set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
 # workloads of tests/bench
 set(MOTEHOUND_FIXED_POINT_BENCHES
   centroid
+  centroid_few
   kalman
   kalman_dense
   known
   luo
   pftl
+  pftl_few
   sound_cases
   sound_three
 )

@@ -6,10 +6,11 @@ int account_open(struct account *account, const struct scenario *scenario, const
                  uint32_t sink)
 {
     const struct energy_profile *profile = energy_profile_find(scenario->energy.profile);
-    *account =
-        (struct account){.open = profile != NULL,
-                         .tracker = scenario->tracker.name,
-                         .draws = energy_tracker_draws(scenario->tracker.name, (int)scenario->tracker.particles)};
+    *account = (struct account){
+        .open = profile != NULL,
+        .cpu = scenario->energy.cpu,
+        .tracker = scenario->tracker.name,
+        .draws = energy_tracker_draws(scenario->energy.cpu, scenario->tracker.name, (int)scenario->tracker.particles)};
     if (!account->open) {
         return 0;
     }
@@ -22,8 +23,8 @@ int account_open(struct account *account, const struct scenario *scenario, const
                                          .wake_length = radio.wake_length,
                                          .order = order};
     account->sensing_us = energy_sensing_us();
-    account->sample_us = energy_sample_us(profile);
-    account->frame_us = energy_frame_us(profile);
+    account->sample_us = energy_sample_us(profile, scenario->energy.cpu);
+    account->frame_us = energy_frame_us(profile, scenario->energy.cpu);
     account->measured = calloc(motes, sizeof *account->measured);
     if (!account->measured || energy_make(&account->ledger, &config, motes)) {
         free(account->measured);
@@ -136,7 +137,7 @@ void account_step(struct account *account, uint32_t mote, sim_time time, int mea
 {
     if (account->open) {
         const uint64_t takes =
-            energy_tracker_us(account->ledger.profile, account->tracker, measurements, account->draws);
+            energy_tracker_us(account->ledger.profile, account->cpu, account->tracker, measurements, account->draws);
         assume(account, mote, time, ENERGY_LOCALISATION, takes);
     }
 }

@@ -9,7 +9,8 @@
 
 struct account {
     struct energy ledger;
-    bool open;                                /* there is a profile */
+    bool open; /* there is a profile */
+    enum energy_cpu cpu;
     uint64_t sensing_us, sample_us, frame_us; /* what work takes */
     const char *tracker;
     uint32_t draws; /* of particles in one of its steps, if it has any */

@@ -77,24 +77,39 @@ struct work {
     double draws_per_particle;                               /* in a step, on average over the nominal scenario */
 };
 
-/* Steps of the trackers: measured (docs/costs.md); `range` over 4 to 12 ranges of one instant; `gas` with 15 to 24 sensors known, the others of a leak with nine
- * samples; `cv_ukf` with four ranges, `cv_ekf` less the difference of the filters; `acoustic`, `dm` and `ml` with six nodes that hear one target; those with particles, and
- * `centroid`, in fixed point, as the published comparisons of them take it. */
-static const struct work steps[] = {
+#include "energy/measured.h"
+
+/* As the published comparisons take it: the filters with particles, and `centroid`, in a fixed point of their own; the others as they were measured when the comparisons were made:
+ * `range` over 4 to 12 ranges of one instant; `gas` with 15 to 24 sensors known, the others of a leak with nine samples; `cv_ukf` with four ranges; `acoustic`, `dm` and `ml` with six
+ * nodes that hear one target. */
+static const struct work assumed_steps[] = {
     {"luo", 479150, 0, 0, 0, 0},      {"diffusion", 25268318, 0, 0, 0, 0}, {"range", 111000, 4000, 0, 0, 0},
     {"pftl", 0, 0, 350, 300, 4.3},    {"msl", 0, 0, 150, 100, 10.7},       {"centroid", 200, 40, 0, 0, 0},
     {"gas", 110000000, 0, 0, 0, 0},   {"gas_small", 0, 279000, 0, 0, 0},   {"gas_ekf", 0, 41000, 0, 0, 0},
     {"gas_ukf", 0, 105000, 0, 0, 0},  {"cv_ukf", 0, 171000, 0, 0, 0},      {"cv_ekf", 0, 151000, 0, 0, 0},
     {"acoustic", 418000, 0, 0, 0, 0}, {"dm", 162000, 0, 0, 0, 0},          {"ml", 0, 5236000, 0, 0, 0},
 };
+enum {
+    MEASURED_STEPS = sizeof measured_steps / sizeof measured_steps[0],
+    ASSUMED_STEPS = sizeof assumed_steps / sizeof assumed_steps[0]
+};
 
-/* A sample is converted, differenced and judged: 0.5 ms at 7.3728 MHz, of which the library's part is 2,337 cycles
- * (docs/costs.md) and the rest the driver of the converter. */
-#define SAMPLE_CYCLES 3686
+/* A sample is converted, differenced and judged: 0.5 ms at 7.3728 MHz. A report that is heard and sent on: half of it for each of the two. */
+#define ASSUMED_SAMPLE_CYCLES 3686
+#define ASSUMED_FRAME_CYCLES 5077
 #define SENSING_US 1000
 
-/* A report that is heard and sent on costs 10,153 cycles (docs/costs.md): half of it for each of the two. */
-#define FRAME_CYCLES 5077
+static const struct work *work_of(enum energy_cpu cpu, const char *tracker)
+{
+    const struct work *steps = cpu == ENERGY_CPU_MEASURED ? measured_steps : assumed_steps;
+    const int count = cpu == ENERGY_CPU_MEASURED ? MEASURED_STEPS : ASSUMED_STEPS;
+    for (int i = 0; i < count; i++) {
+        if (strcmp(steps[i].tracker, tracker) == 0) {
+            return &steps[i];
+        }
+    }
+    return NULL;
+}
 
 static uint64_t microseconds(const struct energy_profile *profile, double cycles)
 {
@@ -103,28 +118,30 @@ static uint64_t microseconds(const struct energy_profile *profile, double cycles
 
 uint64_t energy_sensing_us(void) { return SENSING_US; }
 
-uint64_t energy_sample_us(const struct energy_profile *profile) { return microseconds(profile, SAMPLE_CYCLES); }
-
-uint64_t energy_frame_us(const struct energy_profile *profile) { return microseconds(profile, FRAME_CYCLES); }
-
-uint32_t energy_tracker_draws(const char *tracker, int particles)
+uint64_t energy_sample_us(const struct energy_profile *profile, enum energy_cpu cpu)
 {
-    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-        if (strcmp(steps[i].tracker, tracker) == 0) {
-            return (uint32_t)(steps[i].draws_per_particle * particles);
-        }
-    }
-    return 0;
+    return microseconds(profile, cpu == ENERGY_CPU_MEASURED ? MEASURED_SAMPLE_CYCLES : ASSUMED_SAMPLE_CYCLES);
 }
 
-uint64_t energy_tracker_us(const struct energy_profile *profile, const char *tracker, int measurements, uint32_t draws)
+uint64_t energy_frame_us(const struct energy_profile *profile, enum energy_cpu cpu)
 {
-    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-        if (strcmp(steps[i].tracker, tracker) == 0) {
-            return microseconds(profile, steps[i].cycles + steps[i].cycles_per_measurement * measurements +
-                                             draws * (steps[i].cycles_per_draw +
-                                                      steps[i].cycles_per_draw_and_measurement * measurements));
-        }
+    return microseconds(profile, cpu == ENERGY_CPU_MEASURED ? MEASURED_FRAME_CYCLES : ASSUMED_FRAME_CYCLES);
+}
+
+uint32_t energy_tracker_draws(enum energy_cpu cpu, const char *tracker, int particles)
+{
+    const struct work *work = work_of(cpu, tracker);
+    return work != NULL ? (uint32_t)(work->draws_per_particle * particles) : 0;
+}
+
+uint64_t energy_tracker_us(const struct energy_profile *profile, enum energy_cpu cpu, const char *tracker,
+                           int measurements, uint32_t draws)
+{
+    const struct work *work = work_of(cpu, tracker);
+    if (work == NULL) {
+        return 0;
     }
-    return 0;
+    return microseconds(profile,
+                        work->cycles + work->cycles_per_measurement * measurements +
+                            draws * (work->cycles_per_draw + work->cycles_per_draw_and_measurement * measurements));
 }

@@ -28,13 +28,19 @@ const struct energy_profile *energy_profile_find(const char *name);
 /* Current of transmitting at `dbm`, mA. */
 double energy_profile_transmit(const struct energy_profile *profile, double dbm);
 
+/* What work costs the processor: measured on the ATmega128's benchmarks (tools/cpu-costs), or as published comparisons take it. */
+enum energy_cpu { ENERGY_CPU_MEASURED, ENERGY_CPU_ASSUMED };
+
 /* How long work takes, in microseconds. */
-uint64_t energy_sensing_us(void);                                /* the sensor, for one sample */
-uint64_t energy_sample_us(const struct energy_profile *profile); /* the processor, for that sample */
-uint64_t energy_frame_us(const struct energy_profile *profile);  /* ... for a frame received or sent */
+uint64_t energy_sensing_us(void); /* the sensor, for one sample */
+uint64_t energy_sample_us(const struct energy_profile *profile,
+                          enum energy_cpu cpu); /* the processor, for that sample */
+uint64_t energy_frame_us(const struct energy_profile *profile,
+                         enum energy_cpu cpu); /* ... for a frame received or sent */
 /* ... for a step of the tracker named, with so many measurements and particles drawn; 0 for a name that no row has. */
-uint64_t energy_tracker_us(const struct energy_profile *profile, const char *tracker, int measurements, uint32_t draws);
+uint64_t energy_tracker_us(const struct energy_profile *profile, enum energy_cpu cpu, const char *tracker,
+                           int measurements, uint32_t draws);
 /* How many particles a step of the tracker named draws on average, with so many to keep: where its mote does not tell. */
-uint32_t energy_tracker_draws(const char *tracker, int particles);
+uint32_t energy_tracker_draws(enum energy_cpu cpu, const char *tracker, int particles);
 
 #endif

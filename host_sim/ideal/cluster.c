@@ -335,9 +335,9 @@ static enum mh_status localise(struct run *run, struct mh_estimate *estimate)
         run->tracker.tracker->step(run->state, instant_of(run), run->answers, run->answer_count, estimate);
     if (run->following && run->ledger.profile) {
         const uint32_t draws = tracker_draws(&run->tracker, run->state) - before;
-        ledger_compute(
-            &run->ledger, index_of(run, run->cluster.head.id),
-            (double)energy_tracker_us(run->ledger.profile, run->tracker.tracker->name, (int)run->answer_count, draws));
+        ledger_compute(&run->ledger, index_of(run, run->cluster.head.id),
+                       (double)energy_tracker_us(run->ledger.profile, run->ledger.cpu, run->tracker.tracker->name,
+                                                 (int)run->answer_count, draws));
     }
     return status;
 }

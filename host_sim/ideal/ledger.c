@@ -19,6 +19,7 @@ int ledger_make(struct ledger *ledger, const struct scenario *scenario, uint32_t
     const struct radio_config radio = radio_config_of(scenario, scenario->radio.range_m);
     const struct energy_profile *profile = energy_profile_find(scenario->energy.profile);
     *ledger = (struct ledger){.profile = profile,
+                              .cpu = scenario->energy.cpu,
                               .radio = radio.profile,
                               .count = count,
                               .mains = scenario->energy.sink_mains ? count - 1 : count};
@@ -68,7 +69,7 @@ void ledger_sample(struct ledger *ledger, uint32_t mote)
 {
     ledger_sense(ledger, mote);
     if (ledger->profile) {
-        ledger_compute(ledger, mote, (double)energy_sample_us(ledger->profile));
+        ledger_compute(ledger, mote, (double)energy_sample_us(ledger->profile, ledger->cpu));
     }
 }
 

@@ -18,6 +18,7 @@ enum { LEDGER_PAYLOAD_MAX = 96 }; /* bytes of a frame */
 
 struct ledger {
     const struct energy_profile *profile; /* NULL: nothing is charged */
+    enum energy_cpu cpu;
     struct radio_profile radio;
     double power_mw[ENERGY_STATES];
     double csma_ms, turnaround_ms, ack_turnaround_ms, ack_ms;

@@ -213,6 +213,7 @@ const struct scenario_key scenario_keys[] = {
     {"tracker.filtered", KEY_SWITCH, AT(tracker.filtered), "true", 0, 0, NULL, "acoustic, dm, ml: Kalman filter of constant velocity; false: each position for itself, velocities from the last two"},
     {"tracker.groups", KEY_CHOICE, AT(tracker.groups), "none", 0, 0, "none|members|weights", "acoustic: targets that come near each other go on as a group: not, by all its members, or by the centroid of energies"},
     {"energy.profile", KEY_WORD, AT(energy.profile), "mica2", 0, 0, "mica2|micaz|none", "whose currents are charged; none: energy is not accounted for"},
+    {"energy.cpu", KEY_CHOICE, AT(energy.cpu), "measured", 0, 0, "measured|assumed", "what work costs the processor: measured on an ATmega128, or as published comparisons take it"},
     {"energy.battery_j", KEY_NUMBER, AT(energy.battery_j), "0", 0, 1e6, NULL, "of each mote, which dies when it is used up; 0: all are on mains"},
     {"energy.sink_mains", KEY_SWITCH, AT(energy.sink_mains), "true", 0, 0, NULL, "the sink has no battery, and its energy is left out of the totals"},
     {"metrics.skip_first", KEY_COUNT, AT(metrics.skip_first), "3", 0, 1e6, NULL, "estimates of each target left out of the errors; of localisation_error_rs and sink_error_rs, samples"},

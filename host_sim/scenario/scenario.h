@@ -6,6 +6,7 @@
 #ifndef MOTEHOUND_SIM_SCENARIO_H
 #define MOTEHOUND_SIM_SCENARIO_H
 
+#include "energy/profile.h"
 #include "motehound/acoustic.h"
 #include "motehound/circles.h"
 #include "motehound/election.h"
@@ -270,9 +271,10 @@ struct scenario {
         enum mh_group_mode groups;       /* acoustic, dm: targets that are near each other */
     } tracker;
     struct {
-        char *profile;    /* which mote's currents; `none`: energy is not accounted for */
-        double battery_j; /* that each mote has; 0: on mains */
-        bool sink_mains;  /* the sink has no battery, and its energy is left out of the totals */
+        enum energy_cpu cpu; /* what work costs the processor */
+        char *profile;       /* which mote's currents; `none`: energy is not accounted for */
+        double battery_j;    /* that each mote has; 0: on mains */
+        bool sink_mains;     /* the sink has no battery, and its energy is left out of the totals */
     } energy;
     struct {
         int64_t skip_first;     /* estimates of each track left out of the error metrics */

@@ -16,6 +16,9 @@ void bench_prepare(unsigned step);
 /* What is measured. Each workload keeps the state that the library needs for it in a variable `bench_state`. */
 void bench_step(void);
 
+/* Optional: how many particles have been drawn so far. */
+uint32_t bench_draws(void) __attribute__((weak));
+
 /* True if the last step did the work that is to be measured. */
 bool bench_worked(void);
 

@@ -1,10 +1,16 @@
-/* The default tracker of a ranged target: an instant with 12 ranges. */
+/* The default tracker of a ranged target: an instant with 12 ranges. BENCH_FEW: four. */
 #include "bench.h"
 #include "motehound/range.h"
 #include "ranging.h"
 
+#ifdef BENCH_FEW
+enum { COUNT = RANGING_FEW };
+#else
+enum { COUNT = RANGING_MEASUREMENTS_MAX };
+#endif
+
 struct mh_range bench_state;
-static struct mh_measurement measurements[RANGING_MEASUREMENTS_MAX];
+static struct mh_measurement measurements[COUNT];
 static struct mh_estimate estimate;
 static unsigned now;
 
@@ -24,13 +30,12 @@ void bench_setup(void)
 void bench_prepare(unsigned step)
 {
     now = step;
-    ranging_measurements(step, RANGING_MEASUREMENTS_MAX, measurements);
+    ranging_measurements(step, COUNT, measurements);
 }
 
 void bench_step(void)
 {
-    mh_tracker_range.step(&bench_state, (mh_tick)now * RANGING_INTERVAL, measurements, RANGING_MEASUREMENTS_MAX,
-                          &estimate);
+    mh_tracker_range.step(&bench_state, (mh_tick)now * RANGING_INTERVAL, measurements, COUNT, &estimate);
 }
 
-bool bench_worked(void) { return estimate.measurements == RANGING_MEASUREMENTS_MAX; }
+bool bench_worked(void) { return estimate.measurements == COUNT; }

@@ -22,7 +22,7 @@ static void print_hex(uint32_t value)
 
 int main(void)
 {
-    uint32_t deepest = 0;
+    uint32_t deepest = 0, draws = 0;
     bench_setup();
     for (unsigned step = 0; step < BENCH_WARM_UP + BENCH_COUNTED; step++) {
         bench_prepare(step);
@@ -30,6 +30,7 @@ int main(void)
             bench_step();
             continue;
         }
+        const uint32_t before = bench_draws ? bench_draws() : 0;
         port_stack_paint();
         bench_counted();
         bench_counted_end();
@@ -38,10 +39,13 @@ int main(void)
             port_puts("the step did not do the work that was meant\n");
             return 1;
         }
+        draws += bench_draws ? bench_draws() - before : 0;
         deepest = used > deepest ? used : deepest;
     }
     port_puts("stack 0x");
     print_hex(deepest);
+    port_puts(" draws 0x");
+    print_hex(draws);
     port_puts("\n");
     return 0;
 }

@@ -4,7 +4,7 @@
 
 #include "motehound/measurement.h"
 
-enum { RANGING_INTERVAL = 2000, RANGING_MEASUREMENTS = 8, RANGING_MEASUREMENTS_MAX = 12 };
+enum { RANGING_INTERVAL = 2000, RANGING_FEW = 4, RANGING_MEASUREMENTS = 8, RANGING_MEASUREMENTS_MAX = 12 };
 
 /* What the `count` nearest nodes measure at instant number `step`; count 1 to RANGING_MEASUREMENTS_MAX. */
 void ranging_measurements(unsigned step, uint8_t count, struct mh_measurement *measurements);

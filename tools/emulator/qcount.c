@@ -15,16 +15,14 @@
 
 typedef uint64_t qemu_plugin_id_t;
 struct qemu_plugin_tb;
-struct qemu_plugin_insn;
 enum { QEMU_PLUGIN_CB_NO_REGS = 0 };
 void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id,
                                            void (*callback)(qemu_plugin_id_t, struct qemu_plugin_tb *));
-void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn *insn, void (*callback)(unsigned int, void *),
-                                            int flags, void *userdata);
+void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb, void (*callback)(unsigned int, void *), int flags,
+                                          void *userdata);
 void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*callback)(qemu_plugin_id_t, void *), void *userdata);
 size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb *tb);
-struct qemu_plugin_insn *qemu_plugin_tb_get_insn(const struct qemu_plugin_tb *tb, size_t index);
-uint64_t qemu_plugin_insn_vaddr(const struct qemu_plugin_insn *insn);
+uint64_t qemu_plugin_tb_vaddr(const struct qemu_plugin_tb *tb);
 
 EXPORT int qemu_plugin_version = 1;
 EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const void *info, int argc, char **argv);
@@ -36,10 +34,16 @@ static struct {
     uint64_t instructions, calls, total, min, max;
 } count = {.name = "function"};
 
+/* QEMU translates block by block: what is between two jumps. Whoever calls a function begins a block. */
+struct block {
+    uint64_t address, instructions;
+};
+
 static void executed(unsigned int cpu, void *userdata)
 {
     (void)cpu;
-    const uint64_t address = (uint64_t)(uintptr_t)userdata;
+    const struct block *block = userdata;
+    const uint64_t address = block->address;
     if (count.inside && address == count.stop) {
         count.inside = 0;
         count.min = count.calls == 0 || count.instructions < count.min ? count.instructions : count.min;
@@ -51,17 +55,19 @@ static void executed(unsigned int cpu, void *userdata)
         count.inside = 1;
         count.instructions = 0;
     }
-    count.instructions += (uint64_t)count.inside;
+    count.instructions += count.inside ? block->instructions : 0;
 }
 
 static void translated(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
 {
     (void)id;
-    for (size_t i = 0; i < qemu_plugin_tb_n_insns(tb); i++) {
-        struct qemu_plugin_insn *insn = qemu_plugin_tb_get_insn(tb, i);
-        qemu_plugin_register_vcpu_insn_exec_cb(insn, executed, QEMU_PLUGIN_CB_NO_REGS,
-                                               (void *)(uintptr_t)qemu_plugin_insn_vaddr(insn));
+    struct block *block = malloc(sizeof *block); /* kept: the block may be executed until the end */
+    if (block == NULL) {
+        abort();
     }
+    block->address = qemu_plugin_tb_vaddr(tb);
+    block->instructions = qemu_plugin_tb_n_insns(tb);
+    qemu_plugin_register_vcpu_tb_exec_cb(tb, executed, QEMU_PLUGIN_CB_NO_REGS, block);
 }
 
 static void tell(qemu_plugin_id_t id, void *userdata)

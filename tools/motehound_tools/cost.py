@@ -104,7 +104,7 @@ def flash_of(map_file):
 
 
 def emulate(board, folder, image):
-    """(painted stack, mean, largest), or None if the stack has run into the variables"""
+    """(painted stack, mean, largest, particles drawn on average), or None if the stack has run into the variables"""
     table = symbols(board, image)
     start, stop = table["bench_counted"][0], table["bench_counted_end"][0]
     if board == "atmega128":
@@ -122,7 +122,8 @@ def emulate(board, folder, image):
         if "stack has run into the variables" not in told:
             sys.exit(f"{image}:\n{told}")
         return None
-    return int(depth[1], 16), float(step[2]), int(step[1])
+    draws = re.search(r"draws 0x([0-9a-f]+)", told)
+    return int(depth[1], 16), float(step[2]), int(step[1]), int(draws[1], 16) / COUNTED
 
 
 def callgrind(image):
@@ -165,7 +166,7 @@ def measure(board, configuration, item, count=True):
         result["stack"] = bound(board, folder, sized, "bench_step")
     counted = emulate(board, folder, image) if count and image.exists() else None
     if counted:
-        result["painted"], result["mean"], result["max"] = counted
+        result["painted"], result["mean"], result["max"], result["draws"] = counted
     elif count or not image.exists():
         result["too_large"] = result["state"] + inputs
     return result

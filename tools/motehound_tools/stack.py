@@ -87,7 +87,9 @@ def source_lines(path):
 
 @lru_cache(maxsize=None)
 def source_named(name):
-    return next((str(file) for folder in ("firmware", "tests/bench") for file in sorted((ROOT / folder).rglob(name))), name)
+    """A source of that name, or of that end of a path"""
+    return next((str(file) for folder in ("firmware", "tests/bench") for file in sorted((ROOT / folder).rglob(Path(name).name))
+                 if str(file).endswith(f"/{name}")), name)
 
 
 def run(*command):
@@ -172,7 +174,7 @@ def arm_change(text):
 
 
 def riscv_change(text):
-    found = re.match(r"(?:c\.)?addi(?:16sp)? sp,(?:sp,)?(-?\d+)", text)
+    found = re.match(r"(?:c\.)?addi?(?:16sp)? sp,(?:sp,)?(-?\d+)", text)
     return -int(found[1]) if found else 0
 
 
@@ -196,6 +198,8 @@ MACHINES = {
 }
 # helpers that jump back into whoever calls them: switches, and AVR's shared beginnings and ends of functions
 JUMP_BACK = re.compile(r"^__(tablejump2?__|prologue_saves__|epilogue_restores__|gnu_thumb1_case_\w+)$")
+# RISC-V's shared beginnings: how many registers they save, in blocks of 16 bytes, leaving the stack so
+SAVES = re.compile(r"^__riscv_save_(\d+)$")
 SKIPS = re.compile(r"sbr[cs] |sbi[cs] |cpse ")
 
 
@@ -216,10 +220,14 @@ class Image:
     def _read_frames(self, files):
         """(file, function), and (None, function): the largest frame of that name"""
         self.frames, self.lines = defaultdict(int), defaultdict(set)
+        self.sources, self.places = {}, defaultdict(set)
         for file in files:
+            compiled = str(file).removesuffix(".su").split(".dir/")[-1].replace("__/", "")
+            self.sources[Path(compiled).name] = source_named(compiled)
             for line in Path(file).read_text().splitlines():
                 place, size, kind = line.split("\t")
                 source, first, _, function = place.rsplit(":", 3)
+                self.places[function.split(".")[0]].add(self.sources[Path(compiled).name])
                 self.lines[function.split(".")[0]].add((Path(source).name, int(first)))
                 if kind == "dynamic":
                     raise Unbounded(f"{file}: the frame of {function} has no bound")
@@ -305,13 +313,18 @@ class Image:
                     live = False
                 last = -1 if entry[2] == "-" else address
                 if live and entry[2] != "-":
-                    rows.append((address, files.get(entry[1]) or source_named(entry[1]), int(entry[2])))
+                    rows.append((address, entry[1], int(entry[2])))
         rows.sort(key=lambda row: row[0])
         addresses = [row[0] for row in rows]
         for function, address, text in sites:
             at = bisect_right(addresses, address) - 1
             known = at >= 0 and addresses[at] >= function.address
-            function.indirect.append((*rows[at][1:], text) if known else ("?", 0, text))
+            if not known:
+                function.indirect.append(("?", 0, text))
+                continue
+            _, name, line = rows[at]
+            own = [source for source in self.places[function.name.split(".")[0]] if Path(source).name == name]
+            function.indirect.append((own[0] if own else self.sources.get(name) or files.get(name) or source_named(name), line, text))
 
     def _begins(self, function, file, line):
         """Is that line one of the function's?"""
@@ -414,7 +427,13 @@ class Image:
                     deepest, through = used, []
             if target in self.code and self._goes(text):
                 reached, called = self.function_of(target), bool(self.machine.call.match(text))
-                if called or reached.frame is not None:
+                saves = SAVES.match(reached.name)
+                if saves:
+                    below = used + (64 if int(saves[1]) > 3 else 16) # while it works
+                    if below > deepest:
+                        deepest, through = below, []
+                    used += 16 * (int(saves[1]) // 4 + 1)
+                elif called or reached.frame is not None:
                     if reached is not function or target == function.address or follow:
                         below, chain = self._depth(reached.address if reached.frame is not None else target)
                         left = 0 if called else self.machine.returned # a jump leaves no return address of its own

@@ -343,13 +343,14 @@ static void profiles_make_sense(void)
         for (int row = 1; row < profile->transmit_count; row++) {
             TEST_ASSERT_TRUE(profile->transmit[row - 1].dbm < profile->transmit[row].dbm);
         }
-        TEST_ASSERT_TRUE(energy_sample_us(profile) == 500); /* of an ATmega128 at 7.3728 MHz */
+        TEST_ASSERT_TRUE(energy_sample_us(profile, ENERGY_CPU_ASSUMED) == 500); /* of an ATmega128 at 7.3728 MHz */
         const char *name, *meaning;
         for (size_t t = 0; tracker_describe(t, &name, &meaning); t++) {
-            TEST_ASSERT_TRUE_MESSAGE(energy_tracker_us(profile, name, 5, 200) > 0, name);
+            TEST_ASSERT_TRUE_MESSAGE(energy_tracker_us(profile, ENERGY_CPU_MEASURED, name, 5, 200) > 0, name);
+            TEST_ASSERT_TRUE_MESSAGE(energy_tracker_us(profile, ENERGY_CPU_ASSUMED, name, 5, 200) > 0, name);
         }
-        NEAR(64989, (double)energy_tracker_us(profile, "luo", 20, 0)); /* docs/costs.md */
-        NEAR(0, (double)energy_tracker_us(profile, "no such tracker", 20, 200));
+        NEAR(64989, (double)energy_tracker_us(profile, ENERGY_CPU_ASSUMED, "luo", 20, 0)); /* docs/costs.md */
+        NEAR(0, (double)energy_tracker_us(profile, ENERGY_CPU_MEASURED, "no such tracker", 20, 200));
     }
 }
 
