@@ -1,6 +1,9 @@
 #include "hosts/boards.h"
 
 #include "frame_kinds.h"
+#include "motehound/acoustic.h"
+#include "motehound/cluster.h"
+#include "motehound/pftl.h"
 #include "motehound/prince.h"
 #include "motehound/settings.h"
 #include "reals.h"
@@ -622,6 +625,35 @@ static int ask_counters(struct boards *boards, struct board *board)
     return ask(boards, board, &message, 0, &outcome);
 }
 
+/* Its configuration is one of a simulated mote, so it is sound: its image has less room. The parameters that ask for room are named. */
+static int does_not_start(struct boards *boards, const struct board *board, enum mh_status status)
+{
+    const struct host_mote *what = &board->what;
+    mh_settings *const tracker = what->head ? find(trackers, what->head->tracker->name) : NULL;
+    char parameters[200] = "", text[300];
+    size_t length = 0;
+    if (what->protocol == &mh_protocol_cluster) {
+        const struct mh_cluster_config *cluster = what->protocol_config;
+        length += (size_t)snprintf(parameters, sizeof parameters, ", protocol.members %u", cluster->election.members);
+    }
+    if (tracker == mh_settings_pftl) {
+        const struct mh_pftl_config *pftl = what->head->tracker_config;
+        snprintf(parameters + length, sizeof parameters - length, ", tracker.particles %u", pftl->particles);
+    }
+    if (tracker == mh_settings_acoustic) {
+        const struct mh_acoustic_config *acoustic = what->head->tracker_config;
+        snprintf(parameters, sizeof parameters, "%s%s",
+                 acoustic->separation == MH_SEPARATION_JOINT ? ", tracker.separation joint (expected none)" : "",
+                 acoustic->group.mode != MH_GROUP_NONE ? ", tracker.groups (expected none)" : "");
+    }
+    if (status != MH_ERR_ARGUMENT || parameters[0] == '\0') {
+        snprintf(text, sizeof text, "does not come up (status %d)", (int)status);
+    } else {
+        snprintf(text, sizeof text, "does not come up: more than its image has room for:%s", parameters + 1);
+    }
+    return trouble(boards, board, text);
+}
+
 static int start(struct boards *boards, struct board *board)
 {
     struct message message;
@@ -645,11 +677,7 @@ static int start(struct boards *boards, struct board *board)
         return -1;
     }
     if (outcome.answer.status != MH_OK) {
-        char text[250];
-        snprintf(text, sizeof text,
-                 "does not come up (status %d): a value outside its range, or more than the image has room for",
-                 (int)outcome.answer.status);
-        return trouble(boards, board, text);
+        return does_not_start(boards, board, outcome.answer.status);
     }
     return conclude(boards, board, &outcome, MH_MESSAGE_KINDS, false);
 }

@@ -57,7 +57,8 @@ grep -q '"boards"' on_luo/summary.json || complain "no boards in summary.json"
 ! grep -q '"boards"' native_luo/summary.json || complain "boards in a run without any"
 # few neighbours, as images have room for; a walk of a minute
 sparse=(zhou_real --set source.duration_s=60 --set network.density=5 --set radio.range_m=60 --set protocol.members=7 --seed 3)
-han=(han_real --set source.duration_s=40 --set target.count=1 --set protocol.replies=4 --set tracker.groups=none --seed 3)
+han=(han_real --set source.duration_s=40 --set target.count=1 --set radio.range_m=45 --set protocol.replies=4 --set tracker.groups=none --set tracker.separation=none
+    --seed 3)
 tracker=range
 [ -z "$ARITHMETIC" ] || tracker=pftl
 same zhou 821=host,452=host "${sparse[@]}" --set tracker.name=$tracker
@@ -81,7 +82,8 @@ if [ ${#missing[@]} -eq 0 ]; then
     same luo 17=atmega128,42=atmega128,18=cortex-m0,43=cortex-m0 "${luo[@]}"
     same zhou 821=cortex-m0,452=cortex-m0 "${sparse[@]}" --set tracker.name=$tracker
     if [ -z "$ARITHMETIC" ]; then
-        same han 590=cortex-m0,562=cortex-m0 "${han[@]}"
+        same han 590=atmega128,594=atmega128,519=cortex-m0,562=cortex-m0 "${han[@]}" # all of them lead
+        refused 'more than its image has room for: tracker.separation joint' "$MOTEHOUND" run "${han[@]}" --set tracker.separation=joint --out no --emulate 590=atmega128
     fi
 elif [ -n "$ALL_BOARDS" ]; then
     complain "${missing[*]}"
