@@ -99,6 +99,11 @@ enum {
 #define ASSUMED_FRAME_CYCLES 5077
 #define SENSING_US 1000
 
+static const struct {
+    double sample, frame;
+} cycles_of[] = {[ENERGY_CPU_MEASURED] = {MEASURED_SAMPLE_CYCLES, MEASURED_FRAME_CYCLES},
+                 [ENERGY_CPU_ASSUMED] = {ASSUMED_SAMPLE_CYCLES, ASSUMED_FRAME_CYCLES}};
+
 static const struct work *work_of(enum energy_cpu cpu, const char *tracker)
 {
     const struct work *steps = cpu == ENERGY_CPU_MEASURED ? measured_steps : assumed_steps;
@@ -120,12 +125,12 @@ uint64_t energy_sensing_us(void) { return SENSING_US; }
 
 uint64_t energy_sample_us(const struct energy_profile *profile, enum energy_cpu cpu)
 {
-    return microseconds(profile, cpu == ENERGY_CPU_MEASURED ? MEASURED_SAMPLE_CYCLES : ASSUMED_SAMPLE_CYCLES);
+    return microseconds(profile, cycles_of[cpu].sample);
 }
 
 uint64_t energy_frame_us(const struct energy_profile *profile, enum energy_cpu cpu)
 {
-    return microseconds(profile, cpu == ENERGY_CPU_MEASURED ? MEASURED_FRAME_CYCLES : ASSUMED_FRAME_CYCLES);
+    return microseconds(profile, cycles_of[cpu].frame);
 }
 
 uint32_t energy_tracker_draws(enum energy_cpu cpu, const char *tracker, int particles)
