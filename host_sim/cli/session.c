@@ -136,6 +136,12 @@ static void put_boards(const struct results *results)
                (unsigned long)board->node, board->board, (unsigned long long)board->events, 1e3 * mean / board->rate_hz,
                1e3 * (double)board->cycles_max / board->rate_hz, (unsigned long long)board->missed,
                (unsigned long long)board->overlapped);
+        if (step_cycles_number(&board->steps) > 0) {
+            printf("; steps %.3g ms in the median, 95 %% within %.3g ms, %.3g ms at most",
+                   1e3 * step_cycles_quantile(&board->steps, 0.5) / board->rate_hz,
+                   1e3 * step_cycles_quantile(&board->steps, 0.95) / board->rate_hz,
+                   1e3 * (double)board->steps.longest / board->rate_hz);
+        }
         if (board->ram > 0) {
             printf("; %lu of %lu bytes of RAM never used", (unsigned long)board_ram_free(board),
                    (unsigned long)board->ram);

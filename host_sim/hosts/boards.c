@@ -125,6 +125,7 @@ void board_results_add(struct board_results *results, const struct board_result 
             known->events += result->events;
             known->cycles += result->cycles;
             known->cycles_max = known->cycles_max > result->cycles_max ? known->cycles_max : result->cycles_max;
+            step_cycles_add(&known->steps, &result->steps);
             known->missed += result->missed;
             known->overlapped += result->overlapped;
             known->stack = known->stack > result->stack ? known->stack : result->stack;
@@ -603,6 +604,9 @@ static int conclude(struct boards *boards, struct board *board, const struct out
     result->cycles += cycles;
     result->cycles_max = result->cycles_max > cycles ? result->cycles_max : cycles;
     result->stack = result->stack > outcome->answer.stack ? result->stack : outcome->answer.stack;
+    if (outcome->reported) {
+        step_cycles_count(&result->steps, cycles);
+    }
     result->missed += us * MH_TICKS_PER_S > 1e6 * (double)interval_of(&board->what);
     result->overlapped += boards->now < board->busy_until;
     const sim_time begins = boards->now < board->busy_until ? board->busy_until : boards->now;

@@ -9,6 +9,7 @@
 
 #include "hosts/board.h"
 #include "hosts/host.h"
+#include "hosts/step_cycles.h"
 
 enum { BOARDS_MAX = 64, BOARD_NAME_MAX = 32, BOARD_IMAGE_MAX = 400 };
 
@@ -40,6 +41,7 @@ struct board_result {
     uint64_t cycles;     /* that they took; of QEMU, instructions ... */
     uint64_t cycles_max; /* ... the longest */
     double rate_hz;      /* so many make a second */
+    struct step_cycles steps;
     uint64_t
         missed; /* events that took longer than from one sampling instant to the next, a head's or else the sensor's */
     uint64_t overlapped;            /* events that came before the one before was through */

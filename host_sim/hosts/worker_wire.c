@@ -325,7 +325,10 @@ motehound_worker_board_t worker_board_message(const struct board_result *result)
                                       .variables = (int32_t)result->variables,
                                       .stack = (int32_t)result->stack,
                                       .reports_max = (int32_t)result->reports_max,
-                                      .neighbours_max = (int32_t)result->neighbours_max};
+                                      .neighbours_max = (int32_t)result->neighbours_max,
+                                      .step_classes = STEP_CLASSES,
+                                      .steps = (int32_t *)result->steps.classes,
+                                      .step_longest = (int64_t)result->steps.longest};
 }
 
 struct board_result worker_board_read(const motehound_worker_board_t *message)
@@ -342,7 +345,11 @@ struct board_result worker_board_read(const motehound_worker_board_t *message)
                                   .variables = (uint32_t)message->variables,
                                   .stack = (uint32_t)message->stack,
                                   .reports_max = (uint32_t)message->reports_max,
-                                  .neighbours_max = (uint32_t)message->neighbours_max};
+                                  .neighbours_max = (uint32_t)message->neighbours_max,
+                                  .steps = {.longest = (uint64_t)message->step_longest}};
+    for (int32_t i = 0; i < message->step_classes && i < STEP_CLASSES; i++) {
+        result.steps.classes[i] = message->steps[i];
+    }
     snprintf(result.board, sizeof result.board, "%s", message->board);
     snprintf(result.image, sizeof result.image, "%s", message->image);
     return result;

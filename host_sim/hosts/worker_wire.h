@@ -97,7 +97,7 @@ WORKER_CODEC(count, "888")
 WORKER_CODEC(done, "8888[814418{1}{444"
                    "88888888888888888888888"
                    "488888884444}421]")
-WORKER_CODEC(totals, "8888[8][8][8][4ss188888844444]")
+WORKER_CODEC(totals, "8888[8][8][8][4ss188888844444[4]8]")
 WORKER_CODEC(error, "88s")
 WORKER_CODEC(release, "8")
 

@@ -325,6 +325,13 @@ static json_t *board_summary(const struct board_result *board)
                                mean, "cycles_max", (json_int_t)board->cycles_max, "rate_hz", board->rate_hz, "late",
                                (json_int_t)board->missed, "overlapped", (json_int_t)board->overlapped, "reports_max",
                                (json_int_t)board->reports_max, "neighbours_max", (json_int_t)board->neighbours_max);
+    if (object && step_cycles_number(&board->steps) > 0) {
+        json_object_set_new(object, "steps",
+                            json_pack("{s:I, s:f, s:f, s:I}", "n", (json_int_t)step_cycles_number(&board->steps),
+                                      "cycles_median", step_cycles_quantile(&board->steps, 0.5), "cycles_p95",
+                                      step_cycles_quantile(&board->steps, 0.95), "cycles_max",
+                                      (json_int_t)board->steps.longest));
+    }
     if (object && board->ram > 0) {
         json_object_update_new(object,
                                json_pack("{s:I, s:I, s:I, s:I}", "ram_b", (json_int_t)board->ram, "ram_static_b",

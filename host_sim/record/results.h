@@ -4,7 +4,7 @@
  * summary.json: {"scenario", "seed", "runs", "version", "metrics", "pooled"}. "metrics" holds for each metric the
  * "mean", "std" (divisor n - 1), "median", "p95" and "n" over the runs to which it applies; "pooled" the error metrics
  * over all estimates of all runs together, which is also the "mean" of a metric that is defined over runs (metrics.h). Where motes lived on boards there is "boards", a list with one object a board: "node", "board", "image",
- * "arithmetic", "events", "cycles_mean", "cycles_max", "rate_hz", "late", "overlapped", "reports_max", "neighbours_max", and where it has its own memory "ram_b", "ram_static_b", "stack_b", "ram_free_b". track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
+ * "arithmetic", "events", "cycles_mean", "cycles_max", "rate_hz", "late", "overlapped", "reports_max", "neighbours_max", where it had estimates "steps" with "n", "cycles_median", "cycles_p95" and "cycles_max" (hosts/step_cycles.h), and where it has its own memory "ram_b", "ram_static_b", "stack_b", "ram_free_b". track.csv: one row an estimate of the node `head`; sd_m is the standard deviation of one
  * coordinate, sqrt((cov_xx + cov_yy) / 2); sink_x_m, sink_y_m are what the sink of clusters had of it at that instant; number is that
  * of the true target that it is compared with, extent_m that of a group and of_0 ... the identifiers of its targets. Fields that do not apply are empty. nodes.csv: where the motes of the first
  * run stand. local.csv: of fixed clusters, one row for whatever each of them had by itself when it told the sink. watch.csv: one row for

@@ -394,21 +394,23 @@ static void events_and_actions_come_out_as_they_went_in(void)
 
 static void boards_come_out_as_they_went_in(void)
 {
-    const struct board_result result = {.node = 17,
-                                        .board = "atmega128",
-                                        .image = "images/atmega128/sensor_node",
-                                        .fixed = true,
-                                        .events = 5,
-                                        .cycles = 1ull << 40,
-                                        .cycles_max = 1ull << 33,
-                                        .rate_hz = 7372800,
-                                        .missed = 1,
-                                        .overlapped = 2,
-                                        .ram = 4096,
-                                        .variables = 1000,
-                                        .stack = 500,
-                                        .reports_max = 24,
-                                        .neighbours_max = 8};
+    struct board_result result = {.node = 17,
+                                  .board = "atmega128",
+                                  .image = "images/atmega128/sensor_node",
+                                  .fixed = true,
+                                  .events = 5,
+                                  .cycles = 1ull << 40,
+                                  .cycles_max = 1ull << 33,
+                                  .rate_hz = 7372800,
+                                  .missed = 1,
+                                  .overlapped = 2,
+                                  .ram = 4096,
+                                  .variables = 1000,
+                                  .stack = 500,
+                                  .reports_max = 24,
+                                  .neighbours_max = 8};
+    step_cycles_count(&result.steps, 1000);
+    step_cycles_count(&result.steps, 1ull << 33);
     motehound_worker_board_t board = worker_board_message(&result);
     const motehound_worker_totals_t totals = {.board_count = 1, .boards = &board};
     motehound_worker_totals_t back;
@@ -424,6 +426,7 @@ static void boards_come_out_as_they_went_in(void)
                      got.cycles_max == result.cycles_max && got.rate_hz == 7372800 && got.missed == 1 &&
                      got.overlapped == 2 && got.reports_max == 24 && got.neighbours_max == 8);
     TEST_ASSERT_EQUAL_UINT32(2596, board_ram_free(&got));
+    TEST_ASSERT_EQUAL_MEMORY(&result.steps, &got.steps, sizeof got.steps);
     motehound_worker_totals_t_decode_cleanup(&back);
     free(bytes);
 
@@ -437,6 +440,7 @@ static void boards_come_out_as_they_went_in(void)
     TEST_ASSERT_EQUAL_UINT(2, all.count);
     TEST_ASSERT_TRUE(all.list[0].events == 10 && all.list[0].cycles == 2 * result.cycles &&
                      all.list[0].cycles_max == result.cycles_max && all.list[1].events == 5);
+    TEST_ASSERT_EQUAL_INT64(4, step_cycles_number(&all.list[0].steps));
 }
 
 static void a_layout_is_met_exactly(void)
