@@ -38,3 +38,5 @@ void bench_kalman_step(void)
         mh_kalman_update(&filter, H[m], innovation, MH_REAL(0.01f), 0);
     }
 }
+
+const mh_real *bench_kalman_state(void) { return filter.x; }
