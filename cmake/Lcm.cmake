@@ -5,6 +5,7 @@
 #
 # LCM is the system's, or with MOTEHOUND_FETCH_LCM its release 1.5.0, built once by the host's compiler into .deps/lcm (needs GLib).
 option(MOTEHOUND_FETCH_LCM "download LCM from its upstream repository instead of using the system's" OFF)
+set(lcm_cmake ${CMAKE_CURRENT_LIST_DIR})
 set(lcm_fetched ${CMAKE_CURRENT_LIST_DIR}/../.deps/lcm)
 if(MOTEHOUND_FETCH_LCM AND NOT EXISTS ${lcm_fetched}/bin/lcm-gen)
   include(FetchContent)
@@ -44,11 +45,14 @@ function(lcm_sources variable out)
   endforeach()
   string(REPLACE ".c" ".h" headers "${sources}")
   set(mode)
+  set(then)
   if(ARG_NO_PUBSUB)
     set(mode --c-no-pubsub)
+    set(then COMMAND ${CMAKE_COMMAND} -DFOLDER=${out} -P ${lcm_cmake}/LcmWithoutCaches.cmake)
   endif()
   add_custom_command(OUTPUT ${sources} ${headers} DEPENDS ${ARG_FILES} VERBATIM
-    COMMAND ${LCM_GEN} -c ${mode} --c-cpath ${out} --c-hpath ${out} ${ARG_FILES})
+    COMMAND ${LCM_GEN} -c ${mode} --c-cpath ${out} --c-hpath ${out} ${ARG_FILES}
+    ${then})
   set(${variable} ${sources} ${headers} PARENT_SCOPE)
 endfunction()
 

@@ -322,7 +322,8 @@ static void elect(struct run *run, const struct mh_estimate *estimate)
     const uint32_t before = index_of(run, run->cluster.head.id);
     if (mh_elect(&run->election, estimate, run->candidates, around(run, before), &run->cluster) == MH_OK) {
         const uint32_t head = index_of(run, run->cluster.head.id);
-        (void)mh_elect_members(&run->election, estimate, run->candidates, around(run, head), &run->cluster);
+        (void)mh_elect_members(&run->election, &estimate->origin, &estimate->position, &estimate->velocity,
+                               run->candidates, around(run, head), &run->cluster);
         charge_formation(run, before);
         tell_cluster(run, true);
     }

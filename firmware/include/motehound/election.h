@@ -97,9 +97,11 @@ enum mh_status mh_election_check(const struct mh_election_config *config);
 enum mh_status mh_elect(const struct mh_election_config *config, const struct mh_estimate *estimate,
                         const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster);
 
-/* sacx: the new head, which knows its own neighbours best, chooses the members of `cluster`, as of the instant of `estimate`; `candidates` are
- * its neighbours. No effect by other rules. Errors: MH_ERR_NOT_FINITE (estimate). */
-enum mh_status mh_elect_members(const struct mh_election_config *config, const struct mh_estimate *estimate,
+/* sacx: the new head, which knows its own neighbours best, chooses the members of `cluster`, as of the instant at which the target is at
+ * `position` (m from `origin`) and moves with `velocity` (m/s); `candidates` are its neighbours. No effect by other rules. Errors:
+ * MH_ERR_NOT_FINITE (position, velocity). */
+enum mh_status mh_elect_members(const struct mh_election_config *config, const struct mh_place *origin,
+                                const struct mh_vec2 *position, const struct mh_vec2 *velocity,
                                 const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster);
 
 /* The first cluster of a track, or the first after it was lost: of the candidates that detect the one nearest to `about` is head, those

@@ -126,6 +126,13 @@ enum mh_status mh_head_measurement(struct mh_head *head, const struct mh_measure
 
 mh_tick mh_head_deadline(const struct mh_head *head) { return head->instant + head->config->window; }
 
+/* A function of its own: the estimate is not on the stack while the tracker works. */
+static bool has_track(const struct mh_head *head)
+{
+    struct mh_estimate expected;
+    return head->config->tracker->predict(head->config->tracker_state, head->instant, &expected) == MH_OK;
+}
+
 enum mh_status mh_head_step(struct mh_head *head, struct mh_estimate *estimate, uint16_t *used)
 {
     uint16_t due = 0; /* the others are already of the next instant */
@@ -134,11 +141,10 @@ enum mh_status mh_head_step(struct mh_head *head, struct mh_estimate *estimate, 
     }
     const struct mh_tracker *tracker = head->config->tracker;
     void *state = head->config->tracker_state;
-    struct mh_estimate expected;
     const enum mh_status status = tracker->step(state, head->instant, head->measurements, due, estimate);
     head->counters.estimates += status == MH_OK;
     head->counters.saturated += status == MH_ERR_RANGE || status == MH_ERR_NOT_FINITE;
-    head->tracking = tracker->predict(state, head->instant, &expected) == MH_OK;
+    head->tracking = has_track(head);
     *used = due;
     return status;
 }

@@ -456,9 +456,7 @@ static void close_instant(struct mh_mote *mote, mh_tick now)
 {
     struct mh_head *head = mote->config->head_state;
     const struct mh_protocol *protocol = mote->config->protocol;
-    const struct mh_tracker *tracker = mote->config->head->tracker;
     struct mh_estimate estimate;
-    struct mh_interest interest;
     uint16_t used;
     const bool found = mh_head_step(head, &estimate, &used) == MH_OK;
     if (found) {
@@ -472,6 +470,15 @@ static void close_instant(struct mh_mote *mote, mh_tick now)
         protocol->closed(protocol_state(mote), now, head->instant, found ? &estimate : NULL, head->measurements, used);
     }
     mh_head_go_on(head, used);
+}
+
+/* Whom the tracker wants to hear of at the next instant. */
+static void ask_for_interest(struct mh_mote *mote, mh_tick now)
+{
+    const struct mh_head *head = mote->config->head_state;
+    const struct mh_protocol *protocol = mote->config->protocol;
+    const struct mh_tracker *tracker = mote->config->head->tracker;
+    struct mh_interest interest;
     if (mote->leads && tracker->interest && tracker->interest(mote->config->head->tracker_state, &interest) == MH_OK) {
         if (protocol->ask) {
             (void)protocol->ask(protocol_state(mote), now, &interest, head->instant);
@@ -501,6 +508,7 @@ void mh_mote_alarm(struct mh_mote *mote, mh_tick now)
     if (mote->leads && knows_time(mote) &&
         !mh_tick_before(network_time(mote, now), mh_head_deadline(mote->config->head_state))) {
         close_instant(mote, now);
+        ask_for_interest(mote, now);
     }
     set_alarm(mote, true);
 }

@@ -372,6 +372,24 @@ void mh_cluster_keep(struct mh_cluster_node *c)
 
 /* ---- a track comes ---- */
 
+/* Of an estimate what is wanted of it here: whole estimates are large, and what takes in a track goes deep. */
+struct motion {
+    struct mh_place origin;
+    struct mh_vec2 position, velocity;
+};
+
+static bool expect(const struct mh_cluster_node *c, mh_tick time, struct motion *expected)
+{
+    struct mh_estimate estimate;
+    if (c->node->port->expect(c->node->context, time, &estimate) != MH_OK) {
+        return false;
+    }
+    expected->origin = estimate.origin;
+    expected->position = estimate.position;
+    expected->velocity = estimate.velocity;
+    return true;
+}
+
 static mh_node_id id_at(const uint8_t *bytes)
 {
     return (mh_node_id)bytes[0] << 24 | (mh_node_id)bytes[1] << 16 | (mh_node_id)bytes[2] << 8 | bytes[3];
@@ -389,30 +407,31 @@ static void take_members(struct mh_cluster_node *c, const uint8_t *bytes)
 }
 
 /* By the rule sacx, from the neighbours of this node. */
-static void choose_members(struct mh_cluster_node *c, const struct mh_estimate *expected)
+static void choose_members(struct mh_cluster_node *c, const struct motion *expected)
 {
     struct mh_candidate candidates[MH_NEIGHBOURS_MAX + 1];
     const size_t found = candidates_of(c, NULL, 0, candidates);
-    (void)mh_elect_members(&c->config->election, expected, candidates, found, &c->cluster);
+    (void)mh_elect_members(&c->config->election, &expected->origin, &expected->position, &expected->velocity,
+                           candidates, found, &c->cluster);
 }
 
 /* Where the target is, and how it moves -> c->of. Returns false if it is nowhere. */
-static bool locate(struct mh_cluster_node *c, mh_tick time, const struct mh_place *origin, struct mh_vec2 position,
-                   struct mh_vec2 velocity)
+static bool locate(struct mh_cluster_node *c, mh_tick time, const struct mh_place *origin,
+                   const struct mh_vec2 *position, const struct mh_vec2 *velocity)
 {
-    if (!mh_finite(position.x) || !mh_finite(position.y) || !mh_finite(velocity.x) || !mh_finite(velocity.y)) {
+    if (!mh_finite(position->x) || !mh_finite(position->y) || !mh_finite(velocity->x) || !mh_finite(velocity->y)) {
         return false;
     }
-    const struct mh_place place = mh_place_from_offset(origin, position);
+    const struct mh_place place = mh_place_from_offset(origin, *position);
     c->of.time = time;
     c->of.x_mm = place.x_mm;
     c->of.y_mm = place.y_mm;
-    c->of.vx_mmps = mm_per_s(velocity.x);
-    c->of.vy_mmps = mm_per_s(velocity.y);
+    c->of.vx_mmps = mm_per_s(velocity->x);
+    c->of.vy_mmps = mm_per_s(velocity->y);
     return true;
 }
 
-static void take_track(struct mh_cluster_node *c, const mh_hand_over_t *last)
+static bool lead_on(struct mh_cluster_node *c, const mh_hand_over_t *last)
 {
     const uint8_t *bytes = c->incoming.bytes;
     const size_t length = c->incoming.parcel.length, members = 1 + 4 * (size_t)bytes[0];
@@ -426,29 +445,38 @@ static void take_track(struct mh_cluster_node *c, const mh_hand_over_t *last)
     of.track = c->incoming.parcel.track;
     of.generation = c->incoming.parcel.generation;
     of.heard = (mh_tick)last->time_ms;
-    if (bytes[0] > MH_FORM_MEMBERS || members > length || !mh_cluster_lead(c, &of, bytes + members, length - members)) {
+    return bytes[0] <= MH_FORM_MEMBERS && members <= length &&
+           mh_cluster_lead(c, &of, bytes + members, length - members);
+}
+
+static void take_track(struct mh_cluster_node *c, const mh_hand_over_t *last)
+{
+    if (!lead_on(c, last)) {
         return;
     }
-    struct mh_estimate expected;
-    take_members(c, bytes);
-    if (c->node->port->expect(c->node->context, (mh_tick)last->time_ms, &expected) == MH_OK &&
-        locate(c, (mh_tick)last->time_ms, &expected.origin, expected.position, expected.velocity)) {
+    struct motion expected;
+    take_members(c, c->incoming.bytes);
+    if (expect(c, (mh_tick)last->time_ms, &expected) &&
+        locate(c, (mh_tick)last->time_ms, &expected.origin, &expected.position, &expected.velocity)) {
         choose_members(c, &expected);
     }
     c->counters.formed++;
     announce_soon(c);
 }
 
-void mh_cluster_hear_part(struct mh_cluster_node *c, mh_node_id from, const mh_hand_over_t *part)
+static bool can_take(const struct mh_cluster_node *c, const mh_hand_over_t *part)
 {
     const int32_t age = mh_ticks_between((mh_tick)part->time_ms, c->time), limit = 2 * (int32_t)interval_of(c);
     const struct mh_cluster_of offered = {
         .track = (mh_node_id)part->track, .generation = part->generation, .head = c->node->id};
-    if (!c->node->is_head || c->role == MH_CLUSTER_SINK || age < 0 || age > limit ||
-        (c->knows && c->of.track == offered.track && !mh_cluster_outranks(&offered, &c->of))) {
-        return;
-    }
-    if (mh_parcel_join(&c->incoming.parcel, c->incoming.bytes, sizeof c->incoming.bytes, from, part) == MH_OK) {
+    return c->node->is_head && c->role != MH_CLUSTER_SINK && age >= 0 && age <= limit &&
+           (!c->knows || c->of.track != offered.track || mh_cluster_outranks(&offered, &c->of));
+}
+
+void mh_cluster_hear_part(struct mh_cluster_node *c, mh_node_id from, const mh_hand_over_t *part)
+{
+    if (can_take(c, part) &&
+        mh_parcel_join(&c->incoming.parcel, c->incoming.bytes, sizeof c->incoming.bytes, from, part) == MH_OK) {
         take_track(c, part);
     }
 }
@@ -500,15 +528,21 @@ static void miss(struct mh_cluster_node *c)
     }
 }
 
+static enum mh_status choose_first(struct mh_cluster_node *c, const struct mh_estimate *estimate,
+                                   const struct mh_candidate *candidates, size_t found)
+{
+    const struct mh_place about = mh_place_from_offset(&estimate->origin, estimate->position);
+    return mh_elect_first(&c->config->election, &about, candidates, found, &c->next);
+}
+
 /* The next cluster, if one is due -> c->next. A function of its own: its candidates are off the stack before anything is sent. */
 static enum mh_status choose_next(struct mh_cluster_node *c, const struct mh_estimate *estimate,
                                   const struct mh_measurement *measurements, size_t measured)
 {
     struct mh_candidate candidates[MH_NEIGHBOURS_MAX + 1];
     const size_t found = candidates_of(c, measurements, measured, candidates);
-    const struct mh_place about = mh_place_from_offset(&estimate->origin, estimate->position);
     c->next = c->cluster;
-    return c->afresh ? mh_elect_first(&c->config->election, &about, candidates, found, &c->next)
+    return c->afresh ? choose_first(c, estimate, candidates, found)
                      : mh_elect(&c->config->election, estimate, candidates, found, &c->next);
 }
 
@@ -542,8 +576,8 @@ void mh_cluster_closed(struct mh_cluster_node *c, mh_tick instant, const struct 
     c->counters.answered += is_among(measurements, count, c->node->id);
     /* the way ahead is that of what is stored, but by the rule sacx */
     const bool own = c->config->election.rule == MH_ELECTION_SACX;
-    if (!estimate || !locate(c, instant, &estimate->origin, own ? estimate->position : estimate->stored,
-                             own ? estimate->velocity : estimate->stored_velocity)) {
+    if (!estimate || !locate(c, instant, &estimate->origin, own ? &estimate->position : &estimate->stored,
+                             own ? &estimate->velocity : &estimate->stored_velocity)) {
         return;
     }
     /* so few answers: the target is not where it was expected, or the position is worth little. First ask around. */

@@ -75,21 +75,16 @@ struct way {
     uint8_t horizon;
 };
 
-static enum mh_status make_way(struct way *way, const struct mh_election_config *config,
-                               const struct mh_estimate *estimate)
+static enum mh_status make_way(struct way *way, const struct mh_election_config *config, const struct mh_place *origin,
+                               const struct mh_vec2 *position, const struct mh_vec2 *start,
+                               const struct mh_vec2 *velocity)
 {
     const mh_real interval_s = mh_real_from_ratio((int32_t)config->interval, (int32_t)MH_TICKS_PER_S);
-    way->origin = estimate->origin;
-    way->position = estimate->position;
-    if (config->rule == MH_ELECTION_SACX) {
-        way->start = estimate->position;
-        way->step = estimate->velocity;
-    } else {
-        way->start = estimate->stored;
-        way->step = estimate->stored_velocity;
-    }
-    way->step.x = mh_mul(way->step.x, interval_s);
-    way->step.y = mh_mul(way->step.y, interval_s);
+    way->origin = *origin;
+    way->position = *position;
+    way->start = *start;
+    way->step.x = mh_mul(velocity->x, interval_s);
+    way->step.y = mh_mul(velocity->y, interval_s);
     way->step_length = mh_vec2_length(way->step);
     way->sensing = config->sensing_range_m;
     way->sensing_mm = millimetres(config->sensing_range_m);
@@ -124,10 +119,9 @@ static bool covers(const struct way *way, mh_real intervals, const struct mh_pla
 struct rank {
     mh_real merit;
     mh_wide distance; /* squared */
-    mh_node_id id;
 };
 
-static bool better(const struct rank *a, const struct rank *b)
+static bool better(const struct rank *a, mh_node_id a_id, const struct rank *b, mh_node_id b_id)
 {
     if (a->merit < b->merit || a->merit > b->merit) {
         return a->merit > b->merit;
@@ -135,7 +129,7 @@ static bool better(const struct rank *a, const struct rank *b)
     if (a->distance < b->distance || a->distance > b->distance) {
         return a->distance < b->distance;
     }
-    return a->id < b->id;
+    return a_id < b_id;
 }
 
 /* How far the target goes inside the node's disc from P_1 on. */
@@ -155,7 +149,6 @@ static struct mh_member rank_ahead(const struct mh_election_config *config, cons
                                    const struct mh_candidate *candidate, struct rank *rank)
 {
     struct mh_member member = {candidate->id, candidate->place, 0, 0};
-    rank->id = candidate->id;
     if (config->rule == MH_ELECTION_RHO) {
         rank->merit = way_inside(way, &candidate->place);
         rank->distance = 0;
@@ -188,14 +181,14 @@ static void add(struct list *list, const struct mh_member *member, const struct 
     struct mh_cluster *cluster = list->cluster;
     uint8_t i = cluster->count;
     if (i == list->limit) {
-        if (i == 0 || !better(rank, &list->ranks[i - 1])) {
+        if (i == 0 || !better(rank, member->id, &list->ranks[i - 1], cluster->members[i - 1].id)) {
             return;
         }
         i--;
     } else {
         cluster->count++;
     }
-    for (; i > 0 && better(rank, &list->ranks[i - 1]); i--) {
+    for (; i > 0 && better(rank, member->id, &list->ranks[i - 1], cluster->members[i - 1].id); i--) {
         list->ranks[i] = list->ranks[i - 1];
         cluster->members[i] = cluster->members[i - 1];
     }
@@ -237,7 +230,7 @@ static void choose_detecting(const struct mh_candidate *candidates, size_t count
     for (size_t i = 0; i < count; i++) {
         if (candidates[i].detects && candidates[i].id != cluster->head.id) {
             const struct mh_vec2 d = mh_place_relative(&candidates[i].place, about);
-            const struct rank rank = {0, mh_vec2_square(d), candidates[i].id};
+            const struct rank rank = {0, mh_vec2_square(d)};
             const struct mh_member member = {candidates[i].id, candidates[i].place, 0, 0};
             add(&list, &member, &rank);
         }
@@ -249,10 +242,10 @@ static const struct mh_candidate *nearest_detecting(const struct mh_candidate *c
                                                     const struct mh_place *about)
 {
     const struct mh_candidate *nearest = NULL;
-    struct rank best = {0, 0, 0};
+    struct rank best = {0, 0};
     for (size_t i = 0; i < count; i++) {
-        const struct rank rank = {0, mh_vec2_square(mh_place_relative(&candidates[i].place, about)), candidates[i].id};
-        if (candidates[i].detects && (nearest == NULL || better(&rank, &best))) {
+        const struct rank rank = {0, mh_vec2_square(mh_place_relative(&candidates[i].place, about))};
+        if (candidates[i].detects && (nearest == NULL || better(&rank, candidates[i].id, &best, nearest->id))) {
             nearest = &candidates[i];
             best = rank;
         }
@@ -347,14 +340,13 @@ static uint8_t suits(const struct way *way, const struct mh_candidate *candidate
     return in_sector ? 2 : 1;
 }
 
-static enum mh_status elect_ahead(const struct mh_election_config *config, const struct way *way,
-                                  const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+/* The next head, of those that cover the target's next place; the present one if there is none. A function of its own: what it compares is off the stack
+ * before members are chosen. */
+static void choose_head(const struct mh_election_config *config, const struct way *way,
+                        const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
 {
-    if (!due_ahead(config, way, candidates, count, cluster)) {
-        return MH_NONE;
-    }
     struct mh_member head = cluster->head;
-    struct rank best = {0, 0, 0};
+    struct rank best = {0, 0};
     uint8_t best_suits = 0;
     bool found = false;
     for (size_t i = 0; i < count; i++) {
@@ -364,7 +356,7 @@ static enum mh_status elect_ahead(const struct mh_election_config *config, const
         struct rank rank;
         const struct mh_member member = rank_ahead(config, way, &candidates[i], &rank);
         const uint8_t how = config->rule == MH_ELECTION_RHO ? suits(way, &candidates[i], &cluster->head.place) : 0;
-        if (!found || how > best_suits || (how == best_suits && better(&rank, &best))) {
+        if (!found || how > best_suits || (how == best_suits && better(&rank, member.id, &best, head.id))) {
             found = true;
             head = member;
             best = rank;
@@ -372,6 +364,15 @@ static enum mh_status elect_ahead(const struct mh_election_config *config, const
         }
     }
     cluster->head = head;
+}
+
+static enum mh_status elect_ahead(const struct mh_election_config *config, const struct way *way,
+                                  const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
+{
+    if (!due_ahead(config, way, candidates, count, cluster)) {
+        return MH_NONE;
+    }
+    choose_head(config, way, candidates, count, cluster);
     choose_ahead(config, way, candidates, count, cluster);
     return MH_OK;
 }
@@ -380,7 +381,10 @@ enum mh_status mh_elect(const struct mh_election_config *config, const struct mh
                         const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
 {
     struct way way;
-    const enum mh_status status = make_way(&way, config, estimate);
+    const bool own = config->rule == MH_ELECTION_SACX;
+    const enum mh_status status =
+        make_way(&way, config, &estimate->origin, &estimate->position, own ? &estimate->position : &estimate->stored,
+                 own ? &estimate->velocity : &estimate->stored_velocity);
     if (status != MH_OK) {
         return status;
     }
@@ -388,11 +392,12 @@ enum mh_status mh_elect(const struct mh_election_config *config, const struct mh
                                                : elect_ahead(config, &way, candidates, count, cluster);
 }
 
-enum mh_status mh_elect_members(const struct mh_election_config *config, const struct mh_estimate *estimate,
+enum mh_status mh_elect_members(const struct mh_election_config *config, const struct mh_place *origin,
+                                const struct mh_vec2 *position, const struct mh_vec2 *velocity,
                                 const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
 {
     struct way way;
-    const enum mh_status status = make_way(&way, config, estimate);
+    const enum mh_status status = make_way(&way, config, origin, position, position, velocity);
     if (status == MH_OK && config->rule == MH_ELECTION_SACX) {
         choose_ahead(config, &way, candidates, count, cluster);
     }

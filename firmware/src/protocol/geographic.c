@@ -111,8 +111,14 @@ static const struct mh_neighbour *first_counterclockwise(const struct mh_neighbo
 
 /* ---- both ---- */
 
+/* What changes of a message from hop to hop. */
+struct envelope {
+    enum mh_envelope_kind kind;
+    mh_face_t header;
+};
+
 static enum mh_hop leave(const struct mh_neighbours *table, const struct mh_neighbour *neighbour,
-                         struct mh_message *leaving, mh_node_id *next)
+                         struct envelope *leaving, mh_node_id *next)
 {
     leaving->header.route.sender = (int32_t)table->id;
     leaving->header.route.hops++;
@@ -123,7 +129,7 @@ static enum mh_hop leave(const struct mh_neighbours *table, const struct mh_neig
 }
 
 /* No neighbour is nearer: begin to walk around a face. */
-static enum mh_hop enter(const struct mh_neighbours *table, const struct mh_place *goal, struct mh_message *leaving,
+static enum mh_hop enter(const struct mh_neighbours *table, const struct mh_place *goal, struct envelope *leaving,
                          mh_node_id *next)
 {
     const bool for_the_nearest = leaving->header.route.destination == (int32_t)MH_BROADCAST;
@@ -134,7 +140,7 @@ static enum mh_hop enter(const struct mh_neighbours *table, const struct mh_plac
     if (square_of_distance(&table->place, goal) == 0) { /* nobody is nearer anywhere */
         return for_the_nearest ? MH_HOP_ARRIVED : MH_HOP_UNREACHABLE;
     }
-    leaving->envelope = MH_ENVELOPE_FACE;
+    leaving->kind = MH_ENVELOPE_FACE;
     leaving->header.entry = (int32_t)table->id;
     leaving->header.entry_x_mm = table->place.x_mm;
     leaving->header.entry_y_mm = table->place.y_mm;
@@ -142,7 +148,7 @@ static enum mh_hop enter(const struct mh_neighbours *table, const struct mh_plac
     return leave(table, first, leaving, next);
 }
 
-static enum mh_hop walk_on(const struct mh_neighbours *table, struct mh_message *leaving, mh_node_id *next)
+static enum mh_hop walk_on(const struct mh_neighbours *table, struct envelope *leaving, mh_node_id *next)
 {
     const mh_face_t *header = &leaving->header;
     const struct mh_neighbour *onward =
@@ -168,7 +174,7 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
     if (route->hops >= MH_ROUTE_HOPS_MAX) {
         return MH_HOP_TOO_MANY;
     }
-    struct mh_message changed = *message;
+    struct envelope changed = {message->envelope, message->header};
     const struct mh_place entry = {header->entry_x_mm, header->entry_y_mm, 0};
     const uint64_t here_square = square_of_distance(&table->place, &goal);
     const uint64_t entry_square = square_of_distance(&entry, &goal);
@@ -178,7 +184,7 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
               : greedy(table, (mh_node_id)route->destination, &goal, here_square, table->id);
     enum mh_hop hop;
     if (towards) {
-        changed.envelope = MH_ENVELOPE_ROUTE;
+        changed.kind = MH_ENVELOPE_ROUTE;
         hop = leave(table, towards, &changed, next);
     } else if (!faces) {
         hop = MH_HOP_NO_NEIGHBOUR;
@@ -186,7 +192,9 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
         hop = walks ? walk_on(table, &changed, next) : enter(table, &goal, &changed, next);
     }
     if (hop == MH_HOP_NEXT) {
-        *leaving = changed;
+        *leaving = *message;
+        leaving->envelope = changed.kind;
+        leaving->header = changed.header;
     }
     return hop;
 }

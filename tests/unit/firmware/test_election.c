@@ -203,10 +203,12 @@ static void sacx_looks_as_far_as_a_disc_is_wide(void)
     TEST_ASSERT_EQUAL_UINT8(2, cluster.members[3].last);
 
     place(8, 60, 30, false); /* the new head hears one more */
-    TEST_ASSERT_EQUAL(MH_OK, mh_elect_members(&config, &estimate, nodes, count, &cluster));
+    TEST_ASSERT_EQUAL(MH_OK, mh_elect_members(&config, &estimate.origin, &estimate.position, &estimate.velocity, nodes,
+                                              count, &cluster));
     TEST_ASSERT_EQUAL_UINT8(5, cluster.count);
     use(MH_ELECTION_SAC);
-    TEST_ASSERT_EQUAL(MH_OK, mh_elect_members(&config, &estimate, nodes, 0, &cluster));
+    TEST_ASSERT_EQUAL(
+        MH_OK, mh_elect_members(&config, &estimate.origin, &estimate.position, &estimate.velocity, nodes, 0, &cluster));
     TEST_ASSERT_EQUAL_UINT8(5, cluster.count);
 }
 
@@ -433,7 +435,9 @@ static void what_is_refused(void)
     estimate.stored.x = 0;
     estimate.stored_velocity.y = mh_real_from_float(INFINITY);
     TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, elect());
-    TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, mh_elect_members(&config, &estimate, nodes, count, &cluster));
+    estimate.velocity.y = mh_real_from_float(INFINITY);
+    TEST_ASSERT_EQUAL(MH_ERR_NOT_FINITE, mh_elect_members(&config, &estimate.origin, &estimate.position,
+                                                          &estimate.velocity, nodes, count, &cluster));
     TEST_ASSERT_EQUAL_MEMORY(&before, &cluster, sizeof cluster);
 
     struct mh_election_config wrong = config;
