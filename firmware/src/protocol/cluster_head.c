@@ -33,13 +33,11 @@ static bool is_among(const struct mh_measurement *measurements, size_t measured,
     return false;
 }
 
-/* This node and its neighbours -> candidates[MH_NEIGHBOURS_MAX + 1]. Returns how many. */
-static size_t candidates_of(const struct mh_cluster_node *c, const struct mh_measurement *measurements, size_t measured,
+/* The neighbours -> candidates[MH_NEIGHBOURS_MAX]. Returns how many. */
+static size_t neighbours_of(const struct mh_cluster_node *c, const struct mh_measurement *measurements, size_t measured,
                             struct mh_candidate *candidates)
 {
     size_t found = 0;
-    const struct mh_candidate self = {c->node->id, c->node->place, is_among(measurements, measured, c->node->id)};
-    candidates[found++] = self;
     for (uint8_t i = 0; i < c->neighbours.count; i++) {
         const struct mh_neighbour *n = &c->neighbours.list[i];
         if (n->id != c->config->sink && mh_neighbour_usable(n) && !mh_is_shunned(&c->shunned, n->id, c->time)) {
@@ -49,6 +47,15 @@ static size_t candidates_of(const struct mh_cluster_node *c, const struct mh_mea
         }
     }
     return found;
+}
+
+/* This node and its neighbours -> candidates[MH_NEIGHBOURS_MAX + 1]. Returns how many. */
+static size_t candidates_of(const struct mh_cluster_node *c, const struct mh_measurement *measurements, size_t measured,
+                            struct mh_candidate *candidates)
+{
+    const struct mh_candidate self = {c->node->id, c->node->place, is_among(measurements, measured, c->node->id)};
+    candidates[0] = self;
+    return 1 + neighbours_of(c, measurements, measured, candidates + 1);
 }
 
 /* ---- to lead and to follow ---- */
@@ -409,8 +416,8 @@ static void take_members(struct mh_cluster_node *c, const uint8_t *bytes)
 /* By the rule sacx, from the neighbours of this node. */
 static void choose_members(struct mh_cluster_node *c, const struct motion *expected)
 {
-    struct mh_candidate candidates[MH_NEIGHBOURS_MAX + 1];
-    const size_t found = candidates_of(c, NULL, 0, candidates);
+    struct mh_candidate candidates[MH_NEIGHBOURS_MAX];
+    const size_t found = neighbours_of(c, NULL, 0, candidates);
     (void)mh_elect_members(&c->config->election, &expected->origin, &expected->position, &expected->velocity,
                            candidates, found, &c->cluster);
 }

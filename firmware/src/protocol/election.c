@@ -68,7 +68,7 @@ bool mh_election_asks_all(const struct mh_election_config *config, size_t answer
 /* Where the target is and goes: relative to `origin`, in metres. */
 struct way {
     struct mh_place origin;
-    struct mh_vec2 position, start, step; /* step: of one interval from `start` */
+    struct mh_vec2 start, step; /* step: of one interval from `start` */
     mh_real step_length;
     mh_real sensing;
     uint32_t sensing_mm, radio_mm;
@@ -81,7 +81,6 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
 {
     const mh_real interval_s = mh_real_from_ratio((int32_t)config->interval, (int32_t)MH_TICKS_PER_S);
     way->origin = *origin;
-    way->position = *position;
     way->start = *start;
     way->step.x = mh_mul(velocity->x, interval_s);
     way->step.y = mh_mul(velocity->y, interval_s);
@@ -89,7 +88,7 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
     way->sensing = config->sensing_range_m;
     way->sensing_mm = millimetres(config->sensing_range_m);
     way->radio_mm = millimetres(config->radio_range_m);
-    if (!mh_vec2_finite(way->position) || !mh_vec2_finite(way->start) || !mh_finite(way->step_length)) {
+    if (!mh_vec2_finite(*position) || !mh_vec2_finite(way->start) || !mh_finite(way->step_length)) {
         return MH_ERR_NOT_FINITE;
     }
     way->horizon = config->horizon;
@@ -287,11 +286,11 @@ static bool due_by_detection(enum mh_election rule, const struct mh_candidate *c
     return !head_detects || (rule == MH_ELECTION_SCM_SET && known < cluster->count + 1);
 }
 
-static enum mh_status elect_by_detection(const struct mh_election_config *config, const struct way *way,
+static enum mh_status elect_by_detection(const struct mh_election_config *config, const struct mh_estimate *estimate,
                                          const struct mh_candidate *candidates, size_t count,
                                          struct mh_cluster *cluster)
 {
-    const struct mh_place about = mh_place_from_offset(&way->origin, way->position);
+    const struct mh_place about = mh_place_from_offset(&estimate->origin, estimate->position);
     const struct mh_candidate *nearest = nearest_detecting(candidates, count, &about);
     if (nearest == NULL || !due_by_detection(config->rule, candidates, count, nearest, cluster)) {
         return MH_NONE;
@@ -388,7 +387,7 @@ enum mh_status mh_elect(const struct mh_election_config *config, const struct mh
     if (status != MH_OK) {
         return status;
     }
-    return takes_all_that_detect(config->rule) ? elect_by_detection(config, &way, candidates, count, cluster)
+    return takes_all_that_detect(config->rule) ? elect_by_detection(config, estimate, candidates, count, cluster)
                                                : elect_ahead(config, &way, candidates, count, cluster);
 }
 

@@ -173,8 +173,15 @@ static mh_particle_weight fit(const struct search *search, uint16_t n)
     return mh_particles_sum(&search->pftl->particles, noise + spacing);
 }
 
+/* What an instant gives; whole estimates are large, and the search goes deep. */
+struct fix {
+    struct mh_vec2 position;
+    struct mh_sym2 covariance;
+    uint16_t flags;
+};
+
 /* Position from n >= 1 usable ranges, about the place expected now. */
-static enum mh_status localise(struct search *search, struct mh_vec2 expected, uint16_t n, struct mh_estimate *estimate)
+static enum mh_status localise(struct search *search, struct mh_vec2 expected, uint16_t n, struct fix *fix)
 {
     struct mh_pftl *pftl = search->pftl;
     struct mh_particles *particles = &pftl->particles;
@@ -220,7 +227,7 @@ static enum mh_status localise(struct search *search, struct mh_vec2 expected, u
     /* a particle stands for its share of the region's area */
     const mh_real resolution = mh_wide_to_real(mh_sector_share(&search->region, MH_REAL(1.0f), particles->count));
     if (status == MH_OK) {
-        status = mh_particles_mean(particles, resolution, &estimate->position, &estimate->covariance);
+        status = mh_particles_mean(particles, resolution, &fix->position, &fix->covariance);
     }
     return status;
 }
@@ -245,6 +252,23 @@ static void store(struct mh_pftl *pftl, mh_tick time, struct mh_vec2 position)
     pftl->restarted = false;
 }
 
+static void answer(const struct mh_pftl *pftl, const struct fix *fix, uint16_t n, struct mh_vec2 stored,
+                   struct mh_estimate *estimate)
+{
+    const struct mh_estimate found = {.origin = pftl->origin,
+                                      .time = pftl->time,
+                                      .position = fix->position,
+                                      .velocity = pftl->buffer.velocity,
+                                      .covariance = fix->covariance,
+                                      .raw = fix->position,
+                                      .stored = stored,
+                                      .stored_velocity = pftl->buffer.velocity,
+                                      .measurements = n,
+                                      .flags = fix->flags,
+                                      .states = fix->covariance.xx > 0 ? 2 : 0};
+    *estimate = found;
+}
+
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
                            struct mh_estimate *estimate)
 {
@@ -259,7 +283,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     for (size_t j = 0; j < count && n < UINT16_MAX; j++) {
         n = (uint16_t)(n + (usable(pftl, &measurements[j]) ? 1 : 0));
     }
-    struct mh_estimate answer = {.time = time, .measurements = n};
+    struct fix fix = {.flags = 0};
     struct search search = {.pftl = pftl, .measurements = measurements, .count = count};
     struct mh_vec2 expected = {0, 0};
     const bool begins = !pftl->buffer.known;
@@ -272,44 +296,39 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
         }
         struct mh_place origin = measurements[0].place;
         origin.z_mm = 0;
-        answer.position = centre_of(&search, n, &origin);
-        if (!mh_vec2_finite(answer.position)) {
+        fix.position = centre_of(&search, n, &origin);
+        if (!mh_vec2_finite(fix.position)) {
             return MH_ERR_NOT_FINITE;
         }
         pftl->origin = origin;
         const mh_real radius = pftl->config.sensing_range_m;
-        answer.covariance.xx = answer.covariance.yy = mh_wide_div(mh_wide_mul(radius, radius), 4 * mh_real_from_int(n));
-        answer.flags = MH_ESTIMATE_STARTED;
+        fix.covariance.xx = fix.covariance.yy = mh_wide_div(mh_wide_mul(radius, radius), 4 * mh_real_from_int(n));
+        fix.flags = MH_ESTIMATE_STARTED;
         refreshed = true;
     } else {
         enum mh_status status = mh_followed_predict(&pftl->buffer, time, &expected);
         if (status != MH_OK) {
             return status;
         }
-        status = n > 0 ? localise(&search, expected, n, &answer) : MH_NONE;
+        status = n > 0 ? localise(&search, expected, n, &fix) : MH_NONE;
         if (status == MH_ERR_NOT_FINITE) {
             return status;
         }
         if (status != MH_OK) {
-            answer.position = expected;
-            answer.flags = MH_ESTIMATE_COASTED;
+            fix.position = expected;
+            fix.flags = MH_ESTIMATE_COASTED;
         } else {
             refreshed = !pftl->moving || pftl->restarted ||
-                        mh_followed_differs(&pftl->buffer, time, answer.position, pftl->config.tolerance_m);
+                        mh_followed_differs(&pftl->buffer, time, fix.position, pftl->config.tolerance_m);
         }
     }
     pftl->stepped = true;
     pftl->time = time;
     if (refreshed) {
-        store(pftl, time, answer.position);
-        answer.flags |= MH_ESTIMATE_REFRESHED;
+        store(pftl, time, fix.position);
+        fix.flags |= MH_ESTIMATE_REFRESHED;
     }
-    answer.origin = pftl->origin;
-    answer.raw = answer.position;
-    answer.states = answer.covariance.xx > 0 ? 2 : 0;
-    answer.stored = refreshed ? answer.position : expected;
-    answer.velocity = answer.stored_velocity = pftl->buffer.velocity;
-    *estimate = answer;
+    answer(pftl, &fix, n, refreshed ? fix.position : expected, estimate);
     return MH_OK;
 }
 
