@@ -2,6 +2,8 @@
 
 #include "motehound/bytes.h"
 
+#include <string.h>
+
 #define LEVELS 5 /* of widening; the last is the disc about the nodes */
 #define HALF_ANGLE (MH_PI / 3)
 #define SPEED_SIGMAS 3
@@ -255,18 +257,16 @@ static void store(struct mh_pftl *pftl, mh_tick time, struct mh_vec2 position)
 static void answer(const struct mh_pftl *pftl, const struct fix *fix, uint16_t n, struct mh_vec2 stored,
                    struct mh_estimate *estimate)
 {
-    const struct mh_estimate found = {.origin = pftl->origin,
-                                      .time = pftl->time,
-                                      .position = fix->position,
-                                      .velocity = pftl->buffer.velocity,
-                                      .covariance = fix->covariance,
-                                      .raw = fix->position,
-                                      .stored = stored,
-                                      .stored_velocity = pftl->buffer.velocity,
-                                      .measurements = n,
-                                      .flags = fix->flags,
-                                      .states = fix->covariance.xx > 0 ? 2 : 0};
-    *estimate = found;
+    memset(estimate, 0, sizeof *estimate);
+    estimate->origin = pftl->origin;
+    estimate->time = pftl->time;
+    estimate->position = estimate->raw = fix->position;
+    estimate->velocity = estimate->stored_velocity = pftl->buffer.velocity;
+    estimate->covariance = fix->covariance;
+    estimate->stored = stored;
+    estimate->measurements = n;
+    estimate->flags = fix->flags;
+    estimate->states = fix->covariance.xx > 0 ? 2 : 0;
 }
 
 static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
