@@ -3,6 +3,12 @@
 set -eu
 cd "$1"
 cmp examples/cmake_project/main.c examples/platformio/src/main.c
+mkdir -p "$2"
+for main in cmake_project/main.c zephyr/src/main.c; do # the mote; the loop about it is Zephyr's own
+    sed -n '/^static const struct mh_sensor_config/,/^static mh_tick alarm_time/p' "examples/$main" >"$2/${main%%/*}"
+done
+test -s "$2/zephyr"
+cmp "$2/cmake_project" "$2/zephyr"
 version=$(sed -n 's/^project(motehound VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 grep -q "\"version\": \"$version\"" packaging/library.json
 grep -q "^version=$version$" packaging/library.properties

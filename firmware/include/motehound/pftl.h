@@ -82,9 +82,6 @@ struct mh_pftl {
 /* A step draws at most so many times N particles: six regions, and the redraws of rejection control in the last. */
 #define MH_PFTL_DRAWS_MAX (6 + MH_PARTICLES_REDRAWS)
 
-/* A step draws at most so many times N particles: six regions, and the redraws of rejection control in the last. */
-#define MH_PFTL_DRAWS_MAX (6 + MH_PARTICLES_REDRAWS)
-
 extern const struct mh_tracker mh_tracker_pftl;
 
 void mh_pftl_config_default(struct mh_pftl_config *config);
