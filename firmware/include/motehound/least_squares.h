@@ -13,7 +13,7 @@
  * scale: they begin with 24 fractional bits, MH_LEAST_SQUARES_GUARD_BITS beyond those of a row, and all give up one whenever one of them
  * passes 2^29, so that the largest keeps 28 significant bits whatever the number of rows; 65,535 rows of 32,767 still have 6 fractional bits.
  * A turn keeps the length of a column, which is below sqrt(5) 2^29: nothing wraps. Every sum of products is rounded once, to
- * nearest. An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. The residual, which would cost a third more, is left out. */
+ * nearest. An unknown beyond +-32,767 saturates and is refused as MH_ERR_SINGULAR. What is left of a right side is not told. */
 #ifndef MOTEHOUND_LEAST_SQUARES_H
 #define MOTEHOUND_LEAST_SQUARES_H
 
@@ -40,7 +40,7 @@ struct mh_least_squares {
 #if MH_REAL_FIXED
     int8_t scale; /* r is held 2^scale times as large */
 #else
-    mh_real residual; /* |A z - b| at the free minimiser */
+    mh_real left; /* of the last row's b; the length of all rows' is |A z - b| at the free minimiser */
 #endif
 };
 

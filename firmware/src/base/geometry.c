@@ -1,5 +1,7 @@
 #include "motehound/geometry.h"
 
+#include "motehound/share.h"
+
 static int32_t millimetres(int32_t origin_mm, mh_real offset_m)
 {
 #if MH_REAL_FIXED
@@ -22,14 +24,14 @@ struct mh_place mh_place_from_offset(const struct mh_place *origin, struct mh_ve
 }
 
 #if MH_REAL_FIXED
-/* mm * 8192 / 125, rounded, by one division of 32 bits */
+/* mm * 8192 / 125, rounded, by a product in place of the division: `whole` may be one off, and the rest makes up for it */
 mh_real mh_metres(int32_t mm)
 {
-    const int32_t whole = mm / 125, rest = mm % 125, limit = INT32_MAX / 8192;
-    if (whole < -limit || whole > limit) {
+    if (mm > 32767999 || mm < -32767999) {
         return mm < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
     }
-    return mh_real_from_bits(whole * 8192 + ((rest * 4294967 + 32768) >> 16));
+    const int32_t whole = mh_part(8589935, mm), rest = mm - 125 * whole;
+    return mh_real_from_bits((int32_t)((uint32_t)whole * 8192 + (uint32_t)((rest * 4294967 + 32768) >> 16)));
 }
 #endif
 

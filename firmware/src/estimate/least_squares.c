@@ -17,21 +17,21 @@ static void shrink(struct mh_least_squares *problem)
 static void bring_to_scale(struct mh_least_squares *problem, mh_real *row)
 {
     const uint8_t n = problem->unknowns;
-    mh_real entry = 0, held = 0;
-    for (uint8_t j = 0; j <= n; j++) {
-        entry = mh_max(entry, mh_abs(row[j]));
-        for (uint8_t i = 0; i <= j && i < n; i++) {
-            held = mh_max(held, mh_abs(problem->r[i][j]));
+    mh_real entry = mh_abs(row[n]), held = 0; /* all their bits: as long as the largest's */
+    for (uint8_t i = 0; i < n; i++) {
+        entry |= mh_abs(row[i]);
+        for (uint8_t j = i; j <= n; j++) {
+            held |= mh_abs(problem->r[i][j]);
         }
     }
-    for (; held > LARGEST; held /= 2) {
+    for (; held >= LARGEST; held >>= 1) {
         shrink(problem);
     }
     int8_t fits = 0; /* the scale at which the row has room */
-    for (; entry > LARGEST; entry /= 2) {
+    for (; entry >= LARGEST; entry >>= 1) {
         fits--;
     }
-    for (; fits < problem->scale && entry <= LARGEST / 2; entry += entry) {
+    for (; fits < problem->scale && entry < LARGEST / 2; entry += entry) {
         fits++;
     }
     while (problem->scale > fits) {
@@ -82,14 +82,16 @@ enum mh_status mh_least_squares_add(struct mh_least_squares *problem, const mh_r
         if (!mh_turn(problem->r[i][i], rest[i], &c, &s)) {
             continue;
         }
-        for (uint8_t j = i; j <= n; j++) {
-            const mh_real kept = problem->r[i][j];
-            problem->r[i][j] = mh_turned(c, kept, s, rest[j]);
+        mh_real *r = &problem->r[i][i];
+        *r = mh_turned(c, *r, s, rest[i]); /* and what is left of the row there is 0 */
+        for (uint8_t j = (uint8_t)(i + 1); j <= n; j++) {
+            const mh_real kept = *++r;
+            *r = mh_turned(c, kept, s, rest[j]);
             rest[j] = mh_turned(c, rest[j], -s, kept);
         }
     }
 #if !MH_REAL_FIXED
-    problem->residual = mh_hypot(problem->residual, rest[n]);
+    problem->left = rest[n];
 #endif
     if (problem->rows < UINT16_MAX) {
         problem->rows++;

@@ -129,6 +129,7 @@ enum mh_status mh_puff_nonlinear_begin(struct mh_puff_nonlinear *fit, mh_real di
     fit->trial.age = mh_clamp(age, fit->age_min, age_max);
     fit->trial.mass = mass_through(reference, diffusion, position, fit->trial.age);
     mh_least_squares_begin(&fit->trial_equations, 4);
+    fit->trial_residual = 0;
     return MH_OK;
 }
 
@@ -142,13 +143,17 @@ enum mh_status mh_puff_nonlinear_add(struct mh_puff_nonlinear *fit, const struct
     struct mh_puff_slope slope;
     const mh_real c = mh_puff_concentration(&fit->trial, fit->diffusion, sample->position, &slope);
     const mh_real row[4] = {slope.x, slope.y, slope.log_mass, slope.age};
-    return mh_least_squares_add(&fit->trial_equations, row, sample->concentration - c);
+    const enum mh_status added = mh_least_squares_add(&fit->trial_equations, row, sample->concentration - c);
+    if (added == MH_OK) {
+        fit->trial_residual = mh_hypot(fit->trial_residual, fit->trial_equations.left);
+    }
+    return added;
 }
 
 /* Sum of the squared right sides, which the rotations keep. */
-static mh_real cost_of(const struct mh_least_squares *equations)
+static mh_real cost_of(const struct mh_least_squares *equations, mh_real residual)
 {
-    mh_real sum = equations->residual * equations->residual;
+    mh_real sum = residual * residual;
     for (uint8_t i = 0; i < equations->unknowns; i++) {
         const mh_real d = equations->r[i][equations->unknowns];
         sum += d * d;
@@ -187,6 +192,7 @@ static enum mh_status damped_step(struct mh_puff_nonlinear *fit)
     fit->trial.mass = mh_clamp(best->mass * mh_exp(part * z[2]), 1e-12f, 1e12f);
     fit->trial.age = mh_clamp(best->age + part * z[3], fit->age_min, fit->age_max);
     mh_least_squares_begin(&fit->trial_equations, 4);
+    fit->trial_residual = 0;
     return MH_OK;
 }
 
@@ -195,7 +201,7 @@ enum mh_status mh_puff_nonlinear_advance(struct mh_puff_nonlinear *fit, struct m
     if (fit->trial_equations.rows < MH_PUFF_SAMPLES_MIN) {
         return MH_ERR_TOO_FEW;
     }
-    const mh_real cost = cost_of(&fit->trial_equations);
+    const mh_real cost = cost_of(&fit->trial_equations, fit->trial_residual);
     const bool first = fit->passes == 0;
     const bool better = first || cost < fit->cost;
     bool done = false;
