@@ -15,7 +15,7 @@
  *
  * Scaling and overflow, in fixed point. Products and sums of two products are rounded once, to nearest, and are not larger than what the comments say, so nothing
  * saturates; the operands of a turn take 2^30.3, or 18,000 as mh_real. Cosine and sine come without a division from the inverse root of the sum of
- * squares: each is rounded to 2^-29, and both may be too large or small by the same 1e-8. */
+ * squares: each is rounded to 2^-29, and both may be too large or small by the same 4e-9. */
 #ifndef MOTEHOUND_SHARE_H
 #define MOTEHOUND_SHARE_H
 
