@@ -25,6 +25,7 @@
 #ifndef MOTEHOUND_GEOGRAPHIC_H
 #define MOTEHOUND_GEOGRAPHIC_H
 
+#include "motehound/link.h"
 #include "motehound/neighbours.h"
 
 enum mh_hop {
@@ -44,6 +45,10 @@ void mh_geographic_address(struct mh_message *message, mh_node_id origin, int16_
  * are set with MH_HOP_NEXT only. `faces`: false for greedy forwarding alone. Cost: linear in the table; a square root per neighbour. */
 enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, const struct mh_message *message,
                                struct mh_message *leaving, mh_node_id *next);
+
+/* The same for the message that is due on `link`, which is sent there with MH_HOP_NEXT; else it is still due. */
+enum mh_hop mh_geographic_send(struct mh_link *link, const struct mh_neighbours *table, bool faces,
+                               const struct mh_message *due);
 
 /* Why a message is lost that has neither a next hop nor arrived. */
 enum mh_loss mh_geographic_loss(enum mh_hop hop);

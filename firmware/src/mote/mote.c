@@ -422,16 +422,27 @@ static enum mh_status decode(const struct mh_mote *mote, const uint8_t *frame, s
                : status;
 }
 
-enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length)
+/* -> jumped: whether the network's time has. A function of its own: the message is off the stack before all begins anew. */
+static enum mh_status hear(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length, bool *jumped)
 {
     struct mh_message message;
     const enum mh_status status = decode(mote, frame, length, &message);
+    *jumped = false;
+    if (status == MH_OK && message.kind != MH_MESSAGE_SYNC) {
+        mote->config->protocol->message(protocol_state(mote), now, &message);
+    } else if (status == MH_OK && mote->config->clock) {
+        *jumped = mote->config->clock->message(mote->config->clock_state, now, &message.as.sync);
+    }
+    return status;
+}
+
+enum mh_status mh_mote_frame(struct mh_mote *mote, mh_tick now, const uint8_t *frame, size_t length)
+{
+    bool jumped;
+    const enum mh_status status = hear(mote, now, frame, length, &jumped);
     if (status == MH_OK) {
         mote->counters.frames_received++;
-        if (message.kind != MH_MESSAGE_SYNC) {
-            mote->config->protocol->message(protocol_state(mote), now, &message);
-        } else if (mote->config->clock &&
-                   mote->config->clock->message(mote->config->clock_state, now, &message.as.sync)) {
+        if (jumped) {
             time_jumped(mote, now);
         }
         set_alarm(mote, false);

@@ -149,20 +149,12 @@ static bool send_part(struct mh_cluster_node *c, const struct mh_message *part)
 
 static void send_on(struct mh_cluster_node *c, const struct mh_message *message)
 {
-    struct mh_message leaving;
-    mh_node_id next;
-    const enum mh_hop hop = mh_geographic_next(&c->neighbours, c->config->faces, message, &leaving, &next);
-    switch (hop) {
-    case MH_HOP_NEXT:
-        mh_link_send(&c->link, next, &leaving);
-        break;
-    case MH_HOP_ARRIVED:
-        take_in(c, message);
+    const enum mh_hop hop = mh_geographic_send(&c->link, &c->neighbours, c->config->faces, message);
+    if (hop == MH_HOP_ARRIVED) {
+        mh_cluster_hear_position(c, &message->as.position); /* tracks are not sent on */
         mh_link_finish(&c->link);
-        break;
-    default:
+    } else if (hop != MH_HOP_NEXT) {
         mh_link_drop(&c->link, mh_geographic_loss(hop));
-        break;
     }
 }
 

@@ -114,21 +114,24 @@ static bool covers(const struct way *way, mh_real intervals, const struct mh_pla
     return mh_vec2_square(from_prediction(way, intervals, place)) <= mh_wide_mul(way->sensing, way->sensing);
 }
 
-/* How good a node is: more merit, then less distance, then the lower identifier. */
-struct rank {
-    mh_real merit;
-    mh_wide distance; /* squared */
-};
-
-static bool better(const struct rank *a, mh_node_id a_id, const struct rank *b, mh_node_id b_id)
+/* At how many instants the node covers the target. */
+static uint8_t instants(const struct mh_member *member)
 {
-    if (a->merit < b->merit || a->merit > b->merit) {
-        return a->merit > b->merit;
+    return member->last == 0
+               ? 0
+               : (uint8_t)(member->last - member->first + 1); /* a straight line cuts a disc in one piece */
+}
+
+/* Which node is better: more instants, then less cost, then the lower identifier. */
+static bool better(const struct mh_member *a, mh_wide a_cost, const struct mh_member *b, mh_wide b_cost)
+{
+    if (instants(a) != instants(b)) {
+        return instants(a) > instants(b);
     }
-    if (a->distance < b->distance || a->distance > b->distance) {
-        return a->distance < b->distance;
+    if (a_cost < b_cost || a_cost > b_cost) {
+        return a_cost < b_cost;
     }
-    return a_id < b_id;
+    return a->id < b->id;
 }
 
 /* How far the target goes inside the node's disc from P_1 on. */
@@ -145,12 +148,11 @@ static mh_real way_inside(const struct way *way, const struct mh_place *place)
 
 /* The candidate as a node of the cluster that the rules sac, sacx and rho form. */
 static struct mh_member rank_ahead(const struct mh_election_config *config, const struct way *way,
-                                   const struct mh_candidate *candidate, struct rank *rank)
+                                   const struct mh_candidate *candidate, mh_wide *cost)
 {
     struct mh_member member = {candidate->id, candidate->place, 0, 0};
     if (config->rule == MH_ELECTION_RHO) {
-        rank->merit = way_inside(way, &candidate->place);
-        rank->distance = 0;
+        *cost = -mh_wide_mul(way_inside(way, &candidate->place), MH_REAL(1.0f));
         return member;
     }
     for (uint8_t q = 1; q <= way->horizon; q++) {
@@ -159,12 +161,9 @@ static struct mh_member rank_ahead(const struct mh_election_config *config, cons
             member.last = q;
         }
     }
-    /* a straight line cuts a disc in one piece */
-    const uint8_t instants = member.last == 0 ? 0 : (uint8_t)(member.last - member.first + 1);
     const mh_real aim =
         config->rule == MH_ELECTION_SACX ? mh_real_from_int(way->horizon + 1) / 2 : mh_real_from_int(way->horizon);
-    rank->merit = mh_real_from_int(instants);
-    rank->distance = mh_vec2_square(from_prediction(way, aim, &candidate->place));
+    *cost = mh_vec2_square(from_prediction(way, aim, &candidate->place));
     return member;
 }
 
@@ -172,26 +171,26 @@ static struct mh_member rank_ahead(const struct mh_election_config *config, cons
 struct list {
     struct mh_cluster *cluster;
     uint8_t limit;
-    struct rank ranks[MH_CLUSTER_MAX];
+    mh_wide costs[MH_CLUSTER_MAX];
 };
 
-static void add(struct list *list, const struct mh_member *member, const struct rank *rank)
+static void add(struct list *list, const struct mh_member *member, mh_wide cost)
 {
     struct mh_cluster *cluster = list->cluster;
     uint8_t i = cluster->count;
     if (i == list->limit) {
-        if (i == 0 || !better(rank, member->id, &list->ranks[i - 1], cluster->members[i - 1].id)) {
+        if (i == 0 || !better(member, cost, &cluster->members[i - 1], list->costs[i - 1])) {
             return;
         }
         i--;
     } else {
         cluster->count++;
     }
-    for (; i > 0 && better(rank, member->id, &list->ranks[i - 1], cluster->members[i - 1].id); i--) {
-        list->ranks[i] = list->ranks[i - 1];
+    for (; i > 0 && better(member, cost, &cluster->members[i - 1], list->costs[i - 1]); i--) {
+        list->costs[i] = list->costs[i - 1];
         cluster->members[i] = cluster->members[i - 1];
     }
-    list->ranks[i] = *rank;
+    list->costs[i] = cost;
     cluster->members[i] = *member;
 }
 
@@ -210,10 +209,10 @@ static void choose_ahead(const struct mh_election_config *config, const struct w
         if (candidate->id == cluster->head.id || !near) {
             continue;
         }
-        struct rank rank;
-        const struct mh_member member = rank_ahead(config, way, candidate, &rank);
+        mh_wide cost;
+        const struct mh_member member = rank_ahead(config, way, candidate, &cost);
         if (config->rule == MH_ELECTION_RHO || member.last != 0) {
-            add(&list, &member, &rank);
+            add(&list, &member, cost);
         }
     }
 }
@@ -228,10 +227,8 @@ static void choose_detecting(const struct mh_candidate *candidates, size_t count
     cluster->count = 0;
     for (size_t i = 0; i < count; i++) {
         if (candidates[i].detects && candidates[i].id != cluster->head.id) {
-            const struct mh_vec2 d = mh_place_relative(&candidates[i].place, about);
-            const struct rank rank = {0, mh_vec2_square(d)};
             const struct mh_member member = {candidates[i].id, candidates[i].place, 0, 0};
-            add(&list, &member, &rank);
+            add(&list, &member, mh_vec2_square(mh_place_relative(&candidates[i].place, about)));
         }
     }
 }
@@ -241,12 +238,13 @@ static const struct mh_candidate *nearest_detecting(const struct mh_candidate *c
                                                     const struct mh_place *about)
 {
     const struct mh_candidate *nearest = NULL;
-    struct rank best = {0, 0};
+    mh_wide least = 0;
     for (size_t i = 0; i < count; i++) {
-        const struct rank rank = {0, mh_vec2_square(mh_place_relative(&candidates[i].place, about))};
-        if (candidates[i].detects && (nearest == NULL || better(&rank, candidates[i].id, &best, nearest->id))) {
+        const mh_wide square = mh_vec2_square(mh_place_relative(&candidates[i].place, about));
+        if (candidates[i].detects &&
+            (nearest == NULL || square < least || (!(square > least) && candidates[i].id < nearest->id))) {
             nearest = &candidates[i];
-            best = rank;
+            least = square;
         }
     }
     return nearest;
@@ -345,20 +343,20 @@ static void choose_head(const struct mh_election_config *config, const struct wa
                         const struct mh_candidate *candidates, size_t count, struct mh_cluster *cluster)
 {
     struct mh_member head = cluster->head;
-    struct rank best = {0, 0};
+    mh_wide least = 0;
     uint8_t best_suits = 0;
     bool found = false;
     for (size_t i = 0; i < count; i++) {
         if (!covers(way, MH_REAL(1.0f), &candidates[i].place)) {
             continue;
         }
-        struct rank rank;
-        const struct mh_member member = rank_ahead(config, way, &candidates[i], &rank);
+        mh_wide cost;
+        const struct mh_member member = rank_ahead(config, way, &candidates[i], &cost);
         const uint8_t how = config->rule == MH_ELECTION_RHO ? suits(way, &candidates[i], &cluster->head.place) : 0;
-        if (!found || how > best_suits || (how == best_suits && better(&rank, member.id, &best, head.id))) {
+        if (!found || how > best_suits || (how == best_suits && better(&member, cost, &head, least))) {
             found = true;
             head = member;
-            best = rank;
+            least = cost;
             best_suits = how;
         }
     }

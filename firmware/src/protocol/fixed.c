@@ -96,12 +96,8 @@ static void pass_report(struct mh_fixed *f, const struct mh_message *due)
 
 static void send_on(struct mh_fixed *f, const struct mh_message *due)
 {
-    struct mh_message leaving;
-    mh_node_id next;
-    const enum mh_hop hop = mh_geographic_next(&f->neighbours, false, due, &leaving, &next);
-    if (hop == MH_HOP_NEXT) {
-        mh_link_send(&f->link, next, &leaving);
-    } else {
+    const enum mh_hop hop = mh_geographic_send(&f->link, &f->neighbours, false, due);
+    if (hop != MH_HOP_NEXT) {
         mh_link_drop(&f->link, mh_geographic_loss(hop));
     }
 }

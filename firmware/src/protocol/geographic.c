@@ -111,59 +111,42 @@ static const struct mh_neighbour *first_counterclockwise(const struct mh_neighbo
 
 /* ---- both ---- */
 
-/* What changes of a message from hop to hop. */
-struct envelope {
-    enum mh_envelope_kind kind;
-    mh_face_t header;
+/* The next hop: to whom, and how. */
+struct step {
+    const struct mh_neighbour *to;
+    enum { NEARER, AROUND_A_NEW_FACE, AROUND_THE_FACE } how;
 };
 
-static enum mh_hop leave(const struct mh_neighbours *table, const struct mh_neighbour *neighbour,
-                         struct envelope *leaving, mh_node_id *next)
-{
-    leaving->header.route.sender = (int32_t)table->id;
-    leaving->header.route.hops++;
-    leaving->header.sender_x_mm = table->place.x_mm;
-    leaving->header.sender_y_mm = table->place.y_mm;
-    *next = neighbour->id;
-    return MH_HOP_NEXT;
-}
-
 /* No neighbour is nearer: begin to walk around a face. */
-static enum mh_hop enter(const struct mh_neighbours *table, const struct mh_place *goal, struct envelope *leaving,
-                         mh_node_id *next)
+static enum mh_hop enter(const struct mh_neighbours *table, const struct mh_place *goal, bool for_the_nearest,
+                         struct step *step)
 {
-    const bool for_the_nearest = leaving->header.route.destination == (int32_t)MH_BROADCAST;
-    const struct mh_neighbour *first = first_counterclockwise(table, direction_to(table, goal->x_mm, goal->y_mm));
-    if (!first) {
+    step->how = AROUND_A_NEW_FACE;
+    step->to = first_counterclockwise(table, direction_to(table, goal->x_mm, goal->y_mm));
+    if (!step->to) {
         return for_the_nearest ? MH_HOP_ARRIVED : MH_HOP_NO_NEIGHBOUR;
     }
     if (square_of_distance(&table->place, goal) == 0) { /* nobody is nearer anywhere */
         return for_the_nearest ? MH_HOP_ARRIVED : MH_HOP_UNREACHABLE;
     }
-    leaving->kind = MH_ENVELOPE_FACE;
-    leaving->header.entry = (int32_t)table->id;
-    leaving->header.entry_x_mm = table->place.x_mm;
-    leaving->header.entry_y_mm = table->place.y_mm;
-    leaving->header.first = (int32_t)first->id;
-    return leave(table, first, leaving, next);
+    return MH_HOP_NEXT;
 }
 
-static enum mh_hop walk_on(const struct mh_neighbours *table, struct envelope *leaving, mh_node_id *next)
+static enum mh_hop walk_on(const struct mh_neighbours *table, const mh_face_t *header, struct step *step)
 {
-    const mh_face_t *header = &leaving->header;
-    const struct mh_neighbour *onward =
-        first_counterclockwise(table, direction_to(table, header->sender_x_mm, header->sender_y_mm));
-    if (!onward) {
+    step->how = AROUND_THE_FACE;
+    step->to = first_counterclockwise(table, direction_to(table, header->sender_x_mm, header->sender_y_mm));
+    if (!step->to) {
         return MH_HOP_NO_NEIGHBOUR;
     }
-    if (header->entry == (int32_t)table->id && header->first == (int32_t)onward->id) {
+    if (header->entry == (int32_t)table->id && header->first == (int32_t)step->to->id) {
         return header->route.destination == (int32_t)MH_BROADCAST ? MH_HOP_ARRIVED : MH_HOP_UNREACHABLE;
     }
-    return leave(table, onward, leaving, next);
+    return MH_HOP_NEXT;
 }
 
-enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, const struct mh_message *message,
-                               struct mh_message *leaving, mh_node_id *next)
+static enum mh_hop choose(const struct mh_neighbours *table, bool faces, const struct mh_message *message,
+                          struct step *step)
 {
     const mh_face_t *header = &message->header;
     const mh_route_t *route = &header->route;
@@ -174,27 +157,70 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
     if (route->hops >= MH_ROUTE_HOPS_MAX) {
         return MH_HOP_TOO_MANY;
     }
-    struct envelope changed = {message->envelope, message->header};
     const struct mh_place entry = {header->entry_x_mm, header->entry_y_mm, 0};
     const uint64_t here_square = square_of_distance(&table->place, &goal);
     const uint64_t entry_square = square_of_distance(&entry, &goal);
     const bool walks = message->envelope == MH_ENVELOPE_FACE && here_square >= entry_square;
-    const struct mh_neighbour *towards =
-        walks ? greedy(table, (mh_node_id)route->destination, &goal, entry_square, 0)
-              : greedy(table, (mh_node_id)route->destination, &goal, here_square, table->id);
-    enum mh_hop hop;
-    if (towards) {
-        changed.kind = MH_ENVELOPE_ROUTE;
-        hop = leave(table, towards, &changed, next);
-    } else if (!faces) {
-        hop = MH_HOP_NO_NEIGHBOUR;
-    } else {
-        hop = walks ? walk_on(table, &changed, next) : enter(table, &goal, &changed, next);
+    step->how = NEARER;
+    step->to = walks ? greedy(table, (mh_node_id)route->destination, &goal, entry_square, 0)
+                     : greedy(table, (mh_node_id)route->destination, &goal, here_square, table->id);
+    if (step->to) {
+        return MH_HOP_NEXT;
     }
+    if (!faces) {
+        return MH_HOP_NO_NEIGHBOUR;
+    }
+    return walks ? walk_on(table, header, step)
+                 : enter(table, &goal, route->destination == (int32_t)MH_BROADCAST, step);
+}
+
+static void leave(const struct mh_neighbours *table, const struct step *step, struct mh_message *message)
+{
+    mh_face_t *header = &message->header;
+    if (step->how == NEARER) {
+        message->envelope = MH_ENVELOPE_ROUTE;
+    } else if (step->how == AROUND_A_NEW_FACE) {
+        message->envelope = MH_ENVELOPE_FACE;
+        header->entry = (int32_t)table->id;
+        header->entry_x_mm = table->place.x_mm;
+        header->entry_y_mm = table->place.y_mm;
+        header->first = (int32_t)step->to->id;
+    }
+    header->route.sender = (int32_t)table->id;
+    header->route.hops++;
+    header->sender_x_mm = table->place.x_mm;
+    header->sender_y_mm = table->place.y_mm;
+}
+
+enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, const struct mh_message *message,
+                               struct mh_message *leaving, mh_node_id *next)
+{
+    struct step step;
+    const enum mh_hop hop = choose(table, faces, message, &step);
     if (hop == MH_HOP_NEXT) {
         *leaving = *message;
-        leaving->envelope = changed.kind;
-        leaving->header = changed.header;
+        leave(table, &step, leaving);
+        *next = step.to->id;
+    }
+    return hop;
+}
+
+/* A function of its own: messages are large, and the choice goes deep. */
+static void send(struct mh_link *link, const struct mh_neighbours *table, const struct step *step,
+                 const struct mh_message *due)
+{
+    struct mh_message leaving = *due;
+    leave(table, step, &leaving);
+    mh_link_send(link, step->to->id, &leaving);
+}
+
+enum mh_hop mh_geographic_send(struct mh_link *link, const struct mh_neighbours *table, bool faces,
+                               const struct mh_message *due)
+{
+    struct step step;
+    const enum mh_hop hop = choose(table, faces, due, &step);
+    if (hop == MH_HOP_NEXT) {
+        send(link, table, &step, due);
     }
     return hop;
 }

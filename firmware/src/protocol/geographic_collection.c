@@ -96,20 +96,12 @@ static void pump(struct mh_geographic_collection *g, mh_tick now)
 {
     const struct mh_message *due;
     while ((due = mh_link_due(&g->link, now)) != NULL) {
-        struct mh_message leaving;
-        mh_node_id next;
-        const enum mh_hop hop = mh_geographic_next(&g->neighbours, g->config->faces, due, &leaving, &next);
-        switch (hop) {
-        case MH_HOP_NEXT:
-            mh_link_send(&g->link, next, &leaving);
-            break;
-        case MH_HOP_ARRIVED:
+        const enum mh_hop hop = mh_geographic_send(&g->link, &g->neighbours, g->config->faces, due);
+        if (hop == MH_HOP_ARRIVED) {
             hand_over(g, now, due);
             mh_link_finish(&g->link);
-            break;
-        default:
+        } else if (hop != MH_HOP_NEXT) {
             mh_link_drop(&g->link, mh_geographic_loss(hop));
-            break;
         }
     }
 }

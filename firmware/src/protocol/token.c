@@ -135,23 +135,20 @@ static bool is_for_a_neighbour(const struct mh_token_node *t, const struct mh_me
            t->role != MH_TOKEN_SINK;
 }
 
+static void arrive(struct mh_token_node *t, const struct mh_message *message)
+{
+    const struct mh_message arrived = *message;
+    mh_link_finish(&t->link);
+    take_in(t, &arrived);
+}
+
 static void send_on(struct mh_token_node *t, const struct mh_message *message)
 {
-    struct mh_message leaving;
-    mh_node_id next;
-    const enum mh_hop hop = mh_geographic_next(&t->neighbours, t->config->faces, message, &leaving, &next);
-    switch (hop) {
-    case MH_HOP_NEXT:
-        mh_link_send(&t->link, next, &leaving);
-        break;
-    case MH_HOP_ARRIVED:
-        leaving = *message;
-        mh_link_finish(&t->link);
-        take_in(t, &leaving);
-        break;
-    default:
+    const enum mh_hop hop = mh_geographic_send(&t->link, &t->neighbours, t->config->faces, message);
+    if (hop == MH_HOP_ARRIVED) {
+        arrive(t, message);
+    } else if (hop != MH_HOP_NEXT) {
         mh_link_drop(&t->link, mh_geographic_loss(hop));
-        break;
     }
 }
 
