@@ -4,7 +4,7 @@
  * The link does not know where a message is to go: its owner asks for the message that is due, finds the next hop, and sends it.
  *
  *     while ((message = mh_link_due(link, now)) != NULL) {
- *         if (there is a next hop) mh_link_send(link, neighbour, message); else mh_link_drop(link, reason);
+ *         if (there is a next hop) mh_link_send(link, neighbour, envelope, header); else mh_link_drop(link, reason);
  *     }
  *
  * and does so again whenever mh_link_sent() or the time of mh_link_alarm() may have made a message due. So each attempt takes the next hop that
@@ -85,8 +85,8 @@ enum mh_status mh_link_arrive(struct mh_link *link, const struct mh_message *mes
 /* The message to be sent now, or NULL: the queue is empty, a message is in the air or waits. Valid until the next call. */
 const struct mh_message *mh_link_due(struct mh_link *link, mh_tick now);
 
-/* Send the message that is due to a neighbour, as `leaving`: the same with another header. */
-void mh_link_send(struct mh_link *link, mh_node_id neighbour, const struct mh_message *leaving);
+/* Send the message that is due to a neighbour, with another header; in the queue it keeps its own, from which the next attempt starts. */
+void mh_link_send(struct mh_link *link, mh_node_id neighbour, enum mh_envelope_kind envelope, const mh_face_t *header);
 
 /* Give the message that is due up, and count why. */
 void mh_link_drop(struct mh_link *link, enum mh_loss reason);

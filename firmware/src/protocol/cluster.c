@@ -143,7 +143,7 @@ static bool send_part(struct mh_cluster_node *c, const struct mh_message *part)
         mh_link_finish(&c->link);
         return false;
     }
-    mh_link_send(&c->link, c->next.head.id, part);
+    mh_link_send(&c->link, c->next.head.id, part->envelope, &part->header);
     return true;
 }
 

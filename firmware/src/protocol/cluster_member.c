@@ -395,7 +395,7 @@ void mh_cluster_take_over(struct mh_cluster_node *c)
     if (c->role != MH_CLUSTER_MEMBER || heard_within(c, c->time, SILENT_INSTANTS - 1)) {
         return;
     }
-    const struct mh_cluster silent = c->cluster;
+    const uint8_t known = c->cluster.count;
     struct mh_cluster_of of = c->of;
     of.generation = (int32_t)((uint32_t)of.generation + 1);
     of.heard = c->time;
@@ -403,8 +403,8 @@ void mh_cluster_take_over(struct mh_cluster_node *c)
         return;
     }
     mh_cluster_note(&c->events.taken_over);
-    for (uint8_t i = 0; i < silent.count; i++) {
-        const struct mh_neighbour *n = mh_neighbours_find(&c->neighbours, silent.members[i].id);
+    for (uint8_t i = 0; i < known; i++) { /* of them those that are neighbours are left */
+        const struct mh_neighbour *n = mh_neighbours_find(&c->neighbours, c->cluster.members[i].id);
         if (n) {
             const struct mh_member member = {n->id, {n->x_mm, n->y_mm, 0}, 0, 0};
             c->cluster.members[c->cluster.count++] = member;

@@ -87,11 +87,11 @@ static void pass_report(struct mh_fixed *f, const struct mh_message *due)
         return;
     }
     const struct mh_fixed_member *head = mh_fixed_head(f);
-    struct mh_message leaving = *due;
-    leaving.header.route.destination = (int32_t)head->id;
-    leaving.header.route.x_mm = head->place.x_mm;
-    leaving.header.route.y_mm = head->place.y_mm;
-    mh_link_send(&f->link, head->id, &leaving);
+    mh_face_t header = due->header;
+    header.route.destination = (int32_t)head->id;
+    header.route.x_mm = head->place.x_mm;
+    header.route.y_mm = head->place.y_mm;
+    mh_link_send(&f->link, head->id, due->envelope, &header);
 }
 
 static void send_on(struct mh_fixed *f, const struct mh_message *due)

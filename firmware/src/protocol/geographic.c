@@ -174,13 +174,9 @@ static enum mh_hop choose(const struct mh_neighbours *table, bool faces, const s
                  : enter(table, &goal, route->destination == (int32_t)MH_BROADCAST, step);
 }
 
-static void leave(const struct mh_neighbours *table, const struct step *step, struct mh_message *message)
+static enum mh_envelope_kind leave(const struct mh_neighbours *table, const struct step *step, mh_face_t *header)
 {
-    mh_face_t *header = &message->header;
-    if (step->how == NEARER) {
-        message->envelope = MH_ENVELOPE_ROUTE;
-    } else if (step->how == AROUND_A_NEW_FACE) {
-        message->envelope = MH_ENVELOPE_FACE;
+    if (step->how == AROUND_A_NEW_FACE) {
         header->entry = (int32_t)table->id;
         header->entry_x_mm = table->place.x_mm;
         header->entry_y_mm = table->place.y_mm;
@@ -190,6 +186,7 @@ static void leave(const struct mh_neighbours *table, const struct step *step, st
     header->route.hops++;
     header->sender_x_mm = table->place.x_mm;
     header->sender_y_mm = table->place.y_mm;
+    return step->how == NEARER ? MH_ENVELOPE_ROUTE : MH_ENVELOPE_FACE;
 }
 
 enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, const struct mh_message *message,
@@ -199,19 +196,19 @@ enum mh_hop mh_geographic_next(const struct mh_neighbours *table, bool faces, co
     const enum mh_hop hop = choose(table, faces, message, &step);
     if (hop == MH_HOP_NEXT) {
         *leaving = *message;
-        leave(table, &step, leaving);
+        leaving->envelope = leave(table, &step, &leaving->header);
         *next = step.to->id;
     }
     return hop;
 }
 
-/* A function of its own: messages are large, and the choice goes deep. */
+/* A function of its own: the header is not on the stack while the hop is chosen, which goes deep. */
 static void send(struct mh_link *link, const struct mh_neighbours *table, const struct step *step,
                  const struct mh_message *due)
 {
-    struct mh_message leaving = *due;
-    leave(table, step, &leaving);
-    mh_link_send(link, step->to->id, &leaving);
+    mh_face_t header = due->header;
+    const enum mh_envelope_kind envelope = leave(table, step, &header);
+    mh_link_send(link, step->to->id, envelope, &header);
 }
 
 enum mh_hop mh_geographic_send(struct mh_link *link, const struct mh_neighbours *table, bool faces,

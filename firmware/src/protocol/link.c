@@ -138,11 +138,18 @@ const struct mh_message *mh_link_due(struct mh_link *link, mh_tick now)
     return &link->queue[link->first].message;
 }
 
-void mh_link_send(struct mh_link *link, mh_node_id neighbour, const struct mh_message *leaving)
+void mh_link_send(struct mh_link *link, mh_node_id neighbour, enum mh_envelope_kind envelope, const mh_face_t *header)
 {
+    struct mh_message *message = &link->queue[link->first].message;
+    const enum mh_envelope_kind came_in = message->envelope;
+    const mh_face_t came_with = message->header;
     link->in_air = true;
     link->to = neighbour;
-    link->node->port->send(link->node->context, neighbour, leaving);
+    message->envelope = envelope;
+    message->header = *header;
+    link->node->port->send(link->node->context, neighbour, message);
+    message->envelope = came_in;
+    message->header = came_with;
 }
 
 void mh_link_finish(struct mh_link *link)

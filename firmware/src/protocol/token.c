@@ -160,7 +160,7 @@ static void pump(struct mh_token_node *t)
         if (due->kind == MH_MESSAGE_HAND_OVER && !mh_token_is_offered(t, due)) {
             mh_link_finish(&t->link);
         } else if (is_for_a_neighbour(t, due)) {
-            mh_link_send(&t->link, (mh_node_id)due->header.route.destination, due);
+            mh_link_send(&t->link, (mh_node_id)due->header.route.destination, due->envelope, &due->header);
         } else {
             send_on(t, due);
         }

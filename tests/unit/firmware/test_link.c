@@ -52,7 +52,7 @@ static enum mh_status take(int16_t sequence)
 static void pump(mh_tick now)
 {
     for (const struct mh_message *due = mh_link_due(&link, now); due; due = mh_link_due(&link, now)) {
-        mh_link_send(&link, 20, due);
+        mh_link_send(&link, 20, due->envelope, &due->header);
     }
 }
 
