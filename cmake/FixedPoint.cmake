@@ -12,6 +12,7 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   estimate/distance_fix
   estimate/followed
   estimate/fusion_fixed
+  estimate/kalman_bytes
   estimate/kalman_fixed
   estimate/least_squares
   estimate/node_class
@@ -54,7 +55,13 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   protocol/rendezvous
   protocol/shunned
   protocol/vicinity
+  track/acoustic
+  track/acoustic_dm
+  track/acoustic_fix
+  track/acoustic_saved
+  track/acoustic_scene
   track/centroid
+  track/group
   track/luo
   track/pftl
   wire/wire
@@ -68,6 +75,7 @@ set(MOTEHOUND_FIXED_POINT_TESTS
   test_collection
   test_distance_fix
   test_distance_table
+  test_dm
   test_draws
   test_election
   test_followed

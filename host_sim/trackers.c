@@ -105,6 +105,30 @@ static void set_up_pftl(struct tracker_choice *choice, const struct scenario *sc
     config->systematic = scenario->tracker.resampling == RESAMPLING_SYSTEMATIC;
 }
 
+static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
+                            const struct mh_region *region)
+{
+    const bool joint = choice->tracker->join != NULL; /* one fit for all, and groups */
+    const double least = 1e-3, slowest_mps = 0.1;     /* of a sensor without noise; what the tracker bears */
+    struct mh_acoustic_config *config = &choice->config.acoustic;
+    mh_acoustic_config_default(config, real_of(scenario->sensor.range_m));
+    config->sound.loudness_m2 = loudness_of(scenario);
+    config->sound.source_sd = real_of(scenario->sensor.source_noise);
+    config->sound.background_sd = real_of(fmax(scenario->sensor.background_noise, least));
+    config->variant = scenario->tracker.variant;
+    config->intervals = (uint8_t)scenario->tracker.intervals;
+    config->strongest = (uint8_t)(scenario->tracker.strongest > 0 ? scenario->tracker.strongest : UINT8_MAX);
+    config->separation = scenario->tracker.separation == MH_SEPARATION_JOINT && !joint ? MH_SEPARATION_DECOMPOSITION
+                                                                                       : scenario->tracker.separation;
+    if (scenario->tracker.share_range_m > 0) {
+        config->share_range_m = real_of(scenario->tracker.share_range_m);
+    }
+    config->filtered = scenario->tracker.filtered;
+    config->mirror_check = scenario->protocol.guards > 0;
+    config->speed_mps = real_of(fmax(target_of(scenario, region).speed_mps, slowest_mps));
+    mh_group_config_default(&config->group, scenario->tracker.groups);
+}
+
 /* ---- trackers that need float ---- */
 
 #if MH_REAL_FIXED
@@ -126,30 +150,6 @@ void centre_choose(const struct scenario *scenario, size_t count, struct centre_
 
 #else
 #define FLOAT_ONLY(tracker, set_up) &(tracker), (set_up)
-
-static void set_up_acoustic(struct tracker_choice *choice, const struct scenario *scenario,
-                            const struct mh_region *region)
-{
-    const bool joint = choice->tracker == &mh_tracker_acoustic; /* the others cannot */
-    const double least = 1e-3, slowest_mps = 0.1;               /* of a sensor without noise; what the tracker bears */
-    struct mh_acoustic_config *config = &choice->config.acoustic;
-    mh_acoustic_config_default(config, real_of(scenario->sensor.range_m));
-    config->sound.loudness_m2 = loudness_of(scenario);
-    config->sound.source_sd = real_of(scenario->sensor.source_noise);
-    config->sound.background_sd = real_of(fmax(scenario->sensor.background_noise, least));
-    config->variant = scenario->tracker.variant;
-    config->intervals = (uint8_t)scenario->tracker.intervals;
-    config->strongest = (uint8_t)(scenario->tracker.strongest > 0 ? scenario->tracker.strongest : UINT8_MAX);
-    config->separation = scenario->tracker.separation == MH_SEPARATION_JOINT && !joint ? MH_SEPARATION_DECOMPOSITION
-                                                                                       : scenario->tracker.separation;
-    if (scenario->tracker.share_range_m > 0) {
-        config->share_range_m = real_of(scenario->tracker.share_range_m);
-    }
-    config->filtered = scenario->tracker.filtered;
-    config->mirror_check = scenario->protocol.guards > 0;
-    config->speed_mps = real_of(fmax(target_of(scenario, region).speed_mps, slowest_mps));
-    mh_group_config_default(&config->group, scenario->tracker.groups);
-}
 
 static void set_up_diffusion(struct tracker_choice *choice, const struct scenario *scenario,
                              const struct mh_region *region)
@@ -368,7 +368,7 @@ static const struct {
      "gas leak in the wind: unscented Kalman filter (Zhang et al.)"},
     {"acoustic", FLOAT_ONLY(mh_tracker_acoustic, set_up_acoustic), QUANTITY_SOUND,
      "targets that are heard: median of triples and Gauss-Newton, several together, groups"},
-    {"dm", FLOAT_ONLY(mh_tracker_dm, set_up_acoustic), QUANTITY_SOUND,
+    {"dm", &mh_tracker_dm, set_up_acoustic, QUANTITY_SOUND,
      "targets that are heard: distances from a table, three circles (Han)"},
     {"ml", FLOAT_ONLY(mh_tracker_ml, set_up_acoustic), QUANTITY_SOUND,
      "targets that are heard: maximum likelihood on a grid (Han)"},

@@ -34,6 +34,12 @@
  * source_count.h finds and MH_GROUP_MAX, with the identifiers target, target + 1, ...: whoever gives identifiers leaves these free. Two tracks that are to merge are not UNRESOLVED for it: what velocities say when they
  * part decides.
  *
+ * Scaling and overflow (fixed point, MH_REAL=fixed: `dm` only). Positions, velocities, covariances and energies have 16 fractional bits; squares of lengths and products of variances are 64 bits wide, sums saturate;
+ * the filter's formats, with 2 guard bits and more, are kalman.h's, the fix's sound_fix.h's. Good for nodes and a target within 10 km of where the track began or was handed over (beyond, a step finds nothing
+ * and the track coasts until it ends), for a sensing range to MH_DISTANCE_FIX_RANGE_MAX, for variances to 32,767 (181 m): a larger one refuses the fix or ends the track. reach_m, share_range_m and
+ * acceleration_psd end at 32,767; acceleration_psd is a multiple of 1.5e-5, mh_acoustic_begin() takes standard deviations from 0.004 to 181 (others: MH_ERR_SINGULAR, MH_ERR_NOT_FINITE). A track saved by a head in
+ * float is taken if its variances are within that. Error analysis: docs/fixed_point.md.
+ *
  * load(): MH_ERR_CORRUPT also of a group where the tracker is `dm` or `ml`. among(): others beyond MH_TARGETS_MAX are not reckoned with; so give the nearest. MH_ERR_ARGUMENT: a group is not renamed. Cost: docs/costs.md. */
 #ifndef MOTEHOUND_ACOUSTIC_H
 #define MOTEHOUND_ACOUSTIC_H
@@ -43,6 +49,7 @@
 #include "motehound/group.h"
 #include "motehound/kalman.h"
 #include "motehound/sound.h"
+#include "motehound/sound_fix.h"
 #include "motehound/tracker.h"
 
 /* Measurements that a step works with: 12 bytes of stack each. */
@@ -57,8 +64,8 @@
 #error "MH_ACOUSTIC_HEARD_MAX must be 3 to 1000: a place takes three, and the strongest are found by insertion"
 #endif
 
-/* Of a speed in a saved track, m/s. */
-#define MH_ACOUSTIC_SPEED_UNIT 0.25f
+/* Units of a speed in a saved track, in 1 m/s. */
+#define MH_ACOUSTIC_SPEEDS_A_MPS 4
 
 /* Bytes of a saved track. */
 #define MH_ACOUSTIC_HEADER_BYTES 40
@@ -78,7 +85,7 @@ enum mh_separation {
 /* All finite and in the range given, or init() fails. */
 struct mh_acoustic_config {
     struct mh_sound sound;
-    mh_real sensing_range_m;         /* R, 1 to 1e4, nominal 40 */
+    mh_real sensing_range_m;         /* R, 1 to MH_DISTANCE_FIX_RANGE_MAX (1e4), nominal 40 */
     mh_real reach_m;                 /* from how far a measurement is used, 1 to 1e5, nominal R + 15 */
     enum mh_circles_variant variant; /* of `dm`, nominal UNIFORM */
     uint8_t intervals;               /* of the table of `dm`, 0: undivided; nominal 8, ... */
@@ -90,9 +97,9 @@ struct mh_acoustic_config {
     bool mirror_check;             /* nominal true */
     mh_real acceleration_psd;      /* q, (m/s2)^2 s, 1e-6 to 1e6, nominal 0.5 */
     mh_real
-        speed_mps; /* what a target's velocity may be in each axis when nothing is known of it, 0.1 to 1e3, nominal 10 */
+        speed_mps; /* what a target's velocity may be in each axis when nothing is known of it, 0.1 to MH_ACOUSTIC_SD_MAX, nominal 10 */
     mh_real
-        fix_sd_m; /* of a fix in each axis, where no Fisher information says it (`dm`, `ml`): 0.1 to 1e3, nominal 3 */
+        fix_sd_m; /* of a fix in each axis, where no Fisher information says it (`dm`, `ml`): 0.1 to MH_ACOUSTIC_SD_MAX, nominal 3 */
     mh_real coast_s;              /* 0.1 to 3600, nominal 10 */
     struct mh_group_config group; /* nominal NONE */
 };
@@ -108,6 +115,13 @@ struct mh_acoustic_track {
     uint8_t refused;       /* fixes in a row outside the gate */
     bool moving;           /* there have been two fixes: the velocity means something */
 };
+
+/* The largest standard deviation of the configuration, m or m/s: its square is a variance. */
+#if MH_REAL_FIXED
+#define MH_ACOUSTIC_SD_MAX MH_REAL(181.0f)
+#else
+#define MH_ACOUSTIC_SD_MAX 1e3f
+#endif
 
 struct mh_acoustic_kind;
 

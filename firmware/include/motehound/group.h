@@ -13,7 +13,10 @@
  * merge_m < split_m and the counts are the hysteresis.
  *
  * All is kept as coarsely as it is known and exactly as it is saved (offsets in half metres within +- 63.5, velocities in quarters of m/s within +- 31.75,
- * both limited to that; times in sixteenths of seconds), so that a hand-over changes nothing. About 13 bytes a target. */
+ * both limited to that; times in sixteenths of seconds), so that a hand-over changes nothing. About 13 bytes a target.
+ *
+ * In fixed point (MH_REAL=fixed) there are what a group is, mh_group_single(), and its bytes, exact in either arithmetic: to reckon with another head's group. Groups that are found,
+ * merge or part need float, as the tracker that follows them does. */
 #ifndef MOTEHOUND_GROUP_H
 #define MOTEHOUND_GROUP_H
 
@@ -74,6 +77,8 @@ struct mh_group {
     bool unresolved; /* its targets were parted from others without knowing which is which */
 };
 
+#define MH_GROUP_EPOCHS_MAX 15 /* of what is counted in four bits */
+
 /* Bytes of a saved group of n, at most. */
 #define MH_GROUP_BYTES(n) ((n) < 2 ? 6 : 3 + 12 * (n))
 
@@ -92,6 +97,12 @@ enum mh_status mh_group_found(struct mh_group *group, uint32_t target, const str
                               struct mh_vec2 *centroid);
 
 static inline mh_real mh_group_extent(const struct mh_group *group) { return mh_real_from_ratio(group->extent, 100); }
+
+/* Of a member from the centroid, m. */
+static inline struct mh_vec2 mh_group_offset(const struct mh_group_member *member)
+{
+    return (struct mh_vec2){mh_real_from_ratio(member->x, 2), mh_real_from_ratio(member->y, 2)};
+}
 
 /* Where member i is, the centroid being at `centroid`. */
 struct mh_vec2 mh_group_place(const struct mh_group *group, struct mh_vec2 centroid, uint8_t i);

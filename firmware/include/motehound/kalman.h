@@ -82,6 +82,15 @@ static inline void mh_kalman_covariance(const struct mh_kalman *filter, mh_real 
     mh_kalman_covariance_of(filter, filter->n, P);
 }
 
+/* U and D of the n states as bytes at *at, which is moved on: the upper halves of IEEE 754 binary32 numbers, 8 significant bits, the same in either arithmetic. Rounding U and D leaves a
+ * covariance, rounding P might not. */
+#define MH_KALMAN_FACTOR_BYTES(n) (2 * MH_PACKED_SIZE(n))
+void mh_kalman_write_factors(const struct mh_kalman *filter, uint8_t **at);
+
+/* And back into a filter whose n is set. Errors: MH_ERR_CORRUPT (an element of U that is none, one of D outside 1e-24 to 1e12, a variance outside 1e-12 to 1e12, in fixed point above 32,767); the filter is then half
+ * overwritten. */
+enum mh_status mh_kalman_read_factors(struct mh_kalman *filter, const uint8_t **at);
+
 /* F and Q of motion at constant velocity in the plane for dt > 0 seconds, states (x, y, vx, vy), with white acceleration of
  * `intensity` (m/s2)2 s in each axis (Bar-Shalom, Li and Kirubarajan, 2001, Eq. (6.2.2-12)). F: 16 elements, Q: 10, packed. In fixed point the
  * variance of the position is rounded so that Q stays positive semidefinite. */

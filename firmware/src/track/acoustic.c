@@ -5,27 +5,29 @@
 #define GATE_PATIENCE 2
 
 /* Tracks that were found nearer to each other than so many standard deviations of their distance may have been exchanged. */
-#define DISTINCT_SDS 2.5f
+#define DISTINCT_SDS MH_REAL(2.5f)
 
 enum { MOTION = 4 }; /* states x, y, vx, vy */
 
 void mh_acoustic_config_default(struct mh_acoustic_config *config, mh_real sensing_range_m)
 {
     const struct mh_acoustic_config nominal = {
-        .sound = {.loudness_m2 = sensing_range_m * sensing_range_m, .source_sd = 0.19f, .background_sd = 0.05f},
+        .sound = {.loudness_m2 = mh_squared(sensing_range_m),
+                  .source_sd = MH_REAL(0.19f),
+                  .background_sd = MH_REAL(0.05f)},
         .sensing_range_m = sensing_range_m,
-        .reach_m = sensing_range_m + 15.0f,
+        .reach_m = sensing_range_m + MH_REAL(15.0f),
         .variant = MH_CIRCLES_UNIFORM,
         .intervals = 8,
         .distances = MH_DISTANCE_MIDDLE,
         .separation = MH_SEPARATION_JOINT,
-        .share_range_m = 3.0f * sensing_range_m,
+        .share_range_m = 3 * sensing_range_m,
         .filtered = true,
         .mirror_check = true,
-        .acceleration_psd = 0.5f,
-        .speed_mps = 10.0f,
-        .fix_sd_m = 3.0f,
-        .coast_s = 10.0f,
+        .acceleration_psd = MH_REAL(0.5f),
+        .speed_mps = MH_REAL(10.0f),
+        .fix_sd_m = MH_REAL(3.0f),
+        .coast_s = MH_REAL(10.0f),
     };
     *config = nominal;
     mh_group_config_default(&config->group, MH_GROUP_NONE);
@@ -34,15 +36,19 @@ void mh_acoustic_config_default(struct mh_acoustic_config *config, mh_real sensi
 static bool valid(const struct mh_acoustic_config *config)
 {
     return mh_sound_valid(&config->sound) && (config->sound.source_sd > 0 || config->sound.background_sd > 0) &&
-           mh_within(config->sensing_range_m, 1.0f, 1e4f) && mh_within(config->reach_m, 1.0f, 1e5f) &&
-           config->variant <= MH_CIRCLES_JOINT && config->distances <= MH_DISTANCE_LINEAR && config->strongest != 1 &&
-           config->separation <= MH_SEPARATION_JOINT && mh_within(config->share_range_m, 1.0f, 1e5f) &&
-           mh_within(config->acceleration_psd, 1e-6f, 1e6f) && mh_within(config->speed_mps, 0.1f, 1e3f) &&
-           mh_within(config->fix_sd_m, 0.1f, 1e3f) && mh_within(config->coast_s, 0.1f, 3600.0f) &&
+           mh_within(config->sensing_range_m, MH_REAL(1.0f), MH_DISTANCE_FIX_RANGE_MAX) &&
+           mh_within(config->reach_m, MH_REAL(1.0f), MH_REAL_UPTO(1e5f)) && config->variant <= MH_CIRCLES_JOINT &&
+           config->distances <= MH_DISTANCE_LINEAR && config->strongest != 1 &&
+           config->separation <= MH_SEPARATION_JOINT &&
+           mh_within(config->share_range_m, MH_REAL(1.0f), MH_REAL_UPTO(1e5f)) &&
+           mh_within(config->acceleration_psd, mh_max(MH_REAL(1e-6f), MH_REAL_MIN), MH_REAL_UPTO(1e6f)) &&
+           mh_within(config->speed_mps, MH_REAL(0.1f), MH_ACOUSTIC_SD_MAX) &&
+           mh_within(config->fix_sd_m, MH_REAL(0.1f), MH_ACOUSTIC_SD_MAX) &&
+           mh_within(config->coast_s, MH_REAL(0.1f), MH_REAL(3600.0f)) &&
            mh_group_config_check(&config->group) == MH_OK;
 }
 
-static enum mh_status begin(void *state, const struct mh_acoustic_kind *kind, const void *given, mh_tick interval)
+enum mh_status mh_acoustic_init(void *state, const struct mh_acoustic_kind *kind, const void *given, mh_tick interval)
 {
     struct mh_acoustic *acoustic = state;
     const struct mh_acoustic_config *config = given;
@@ -60,31 +66,18 @@ static enum mh_status begin(void *state, const struct mh_acoustic_kind *kind, co
     return MH_OK;
 }
 
-static enum mh_status init_gn(void *state, const void *config, mh_tick interval)
-{
-    return begin(state, &mh_acoustic_kind_gn, config, interval);
-}
-
-static enum mh_status init_dm(void *state, const void *config, mh_tick interval)
-{
-    return begin(state, &mh_acoustic_kind_dm, config, interval);
-}
-
-static enum mh_status init_ml(void *state, const void *config, mh_tick interval)
-{
-    return begin(state, &mh_acoustic_kind_ml, config, interval);
-}
-
 /* ---- the filter ---- */
 
 /* Position and velocity with their covariances: of each, and of both. */
-static enum mh_status set(struct mh_acoustic_track *track, struct mh_vec2 position, const struct mh_sym2 *covariance,
-                          struct mh_vec2 velocity, const struct mh_sym2 *velocities, mh_real both)
+enum mh_status mh_acoustic_set(struct mh_acoustic_track *track, struct mh_vec2 position,
+                               const struct mh_sym2 *covariance, struct mh_vec2 velocity,
+                               const struct mh_sym2 *velocities, mh_real both)
 {
     const struct mh_sym2 *C = covariance, *V = velocities;
     const mh_real x[MOTION] = {position.x, position.y, velocity.x, velocity.y};
-    const mh_real P[MH_PACKED_SIZE(MOTION)] = {C->xx, C->xy,        C->yy,        both * C->xx, both * C->xy,
-                                               V->xx, both * C->xy, both * C->yy, V->xy,        V->yy};
+    const mh_real cross_xx = mh_mul(both, C->xx), cross_xy = mh_mul(both, C->xy), cross_yy = mh_mul(both, C->yy);
+    const mh_real P[MH_PACKED_SIZE(MOTION)] = {C->xx, C->xy,    C->yy,    cross_xx, cross_xy,
+                                               V->xx, cross_xy, cross_yy, V->xy,    V->yy};
     return mh_kalman_init(&track->filter, MOTION, x, P);
 }
 
@@ -98,49 +91,48 @@ static enum mh_status set_first(const struct mh_acoustic_config *config, const s
     track->moving = false;
     track->refused = 0;
     memset(track->speeds, 0, sizeof track->speeds);
-    return set(track, fix->position, &fix->covariance, rest, &velocities, 0);
+    return mh_acoustic_set(track, fix->position, &fix->covariance, rest, &velocities, 0);
 }
 
 /* The velocity between the fix and the one before: the filter forgets what it had. */
 static enum mh_status set_chord(const struct mh_acoustic_fix *fix, struct mh_vec2 before, mh_real seconds,
                                 struct mh_acoustic_track *track)
 {
-    const mh_real rate = 1.0f / seconds;
-    struct mh_vec2 velocity = {(fix->position.x - before.x) * rate, (fix->position.y - before.y) * rate};
-    const mh_real speed = mh_sqrt(mh_squared(velocity.x) + mh_squared(velocity.y));
-    const mh_real scale = speed > MH_ACOUSTIC_FASTEST_MPS ? MH_ACOUSTIC_FASTEST_MPS / speed : 1.0f;
-    const mh_real twice = 2.0f * rate * rate;
+    const mh_real rate = mh_div(MH_REAL(1.0f), seconds);
+    const struct mh_vec2 way = mh_vec2_between(before, fix->position);
+    const struct mh_vec2 chord = {mh_mul(way.x, rate), mh_mul(way.y, rate)};
+    const mh_real speed = mh_vec2_length(chord);
+    const mh_real scale = speed > MH_ACOUSTIC_FASTEST_MPS ? mh_div(MH_ACOUSTIC_FASTEST_MPS, speed) : MH_REAL(1.0f);
+    const struct mh_vec2 velocity = {mh_mul(chord.x, scale), mh_mul(chord.y, scale)};
+    const mh_real twice = mh_mul(2 * rate, rate);
     const struct mh_sym2 *C = &fix->covariance;
-    const struct mh_sym2 velocities = {twice * C->xx, twice * C->xy, twice * C->yy};
-    velocity.x *= scale;
-    velocity.y *= scale;
-    return set(track, fix->position, C, velocity, &velocities, rate);
+    const struct mh_sym2 velocities = {mh_mul(twice, C->xx), mh_mul(twice, C->xy), mh_mul(twice, C->yy)};
+    return mh_acoustic_set(track, fix->position, C, velocity, &velocities, rate);
 }
 
 /* As two scalars with independent errors: y, and x less what y says of it. */
 static enum mh_status update(struct mh_acoustic_track *track, const struct mh_acoustic_fix *fix)
 {
     const struct mh_sym2 *R = &fix->covariance;
-    const mh_real l = R->xy / R->yy;
-    const mh_real along_y[MOTION] = {0, 1}, across[MOTION] = {1, -l};
+    const mh_real l = mh_div(R->xy, R->yy);
+    const mh_real along_y[MOTION] = {0, MH_REAL(1.0f)}, across[MOTION] = {MH_REAL(1.0f), -l};
     enum mh_status status =
         mh_kalman_update(&track->filter, along_y, fix->position.y - track->filter.x[1], R->yy, NULL);
     if (status == MH_OK) {
-        const mh_real expected = track->filter.x[0] - l * track->filter.x[1];
-        status = mh_kalman_update(&track->filter, across, fix->position.x - l * fix->position.y - expected,
-                                  R->xx - l * R->xy, NULL);
+        const mh_real expected = track->filter.x[0] - mh_mul(l, track->filter.x[1]);
+        status = mh_kalman_update(&track->filter, across, fix->position.x - mh_mul(l, fix->position.y) - expected,
+                                  R->xx - mh_mul(l, R->xy), NULL);
     }
     return status;
 }
 
 static void note_speed(struct mh_acoustic_track *track, struct mh_vec2 before, mh_real seconds)
 {
-    const struct mh_vec2 now = mh_acoustic_position(track);
-    const mh_real speed = mh_sqrt(mh_squared(now.x - before.x) + mh_squared(now.y - before.y)) / seconds;
-    const mh_real units = mh_min(speed, MH_ACOUSTIC_FASTEST_MPS) / MH_ACOUSTIC_SPEED_UNIT;
+    const struct mh_vec2 way = mh_vec2_between(before, mh_acoustic_position(track));
+    const mh_real speed = mh_div(mh_vec2_length(way), seconds);
     track->speeds[2] = track->speeds[1];
     track->speeds[1] = track->speeds[0];
-    track->speeds[0] = (uint8_t)(units + 0.5f);
+    track->speeds[0] = (uint8_t)mh_real_round(MH_ACOUSTIC_SPEEDS_A_MPS * mh_min(speed, MH_ACOUSTIC_FASTEST_MPS));
 }
 
 /* The fix, `seconds` after the last one at `before`, goes into the predicted track. MH_NONE: it is left out. */
@@ -264,8 +256,8 @@ static unsigned merging(const struct mh_acoustic_scene *scene)
     return 0;
 }
 
-static enum mh_status step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
-                           struct mh_estimate *estimate)
+enum mh_status mh_acoustic_step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
+                                struct mh_estimate *estimate)
 {
     struct mh_acoustic *acoustic = state;
     if (acoustic == NULL || estimate == NULL || (measurements == NULL && count > 0)) {
@@ -326,7 +318,7 @@ static enum mh_status step(void *state, mh_tick time, const struct mh_measuremen
     return MH_OK;
 }
 
-static enum mh_status predict(const void *state, mh_tick time, struct mh_estimate *estimate)
+enum mh_status mh_acoustic_predict(const void *state, mh_tick time, struct mh_estimate *estimate)
 {
     const struct mh_acoustic *acoustic = state;
     if (acoustic == NULL || estimate == NULL) {
@@ -347,7 +339,7 @@ static enum mh_status predict(const void *state, mh_tick time, struct mh_estimat
 
 /* ---- from head to head, and beside others ---- */
 
-static enum mh_status save(const void *state, uint8_t *bytes, size_t *length)
+enum mh_status mh_acoustic_save(const void *state, uint8_t *bytes, size_t *length)
 {
     const struct mh_acoustic *acoustic = state;
     if (acoustic == NULL || bytes == NULL || length == NULL) {
@@ -367,10 +359,7 @@ static void go_on(struct mh_acoustic *acoustic, const struct mh_acoustic_track *
     acoustic->stepped = acoustic->tracking = true;
 }
 
-/* A group takes a fit of several sources. */
-static bool follows_groups(const struct mh_acoustic *acoustic) { return acoustic->kind->locate_jointly != NULL; }
-
-static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
+enum mh_status mh_acoustic_load(void *state, const uint8_t *bytes, size_t length)
 {
     struct mh_acoustic *acoustic = state;
     struct mh_acoustic_track track;
@@ -378,20 +367,20 @@ static enum mh_status load(void *state, const uint8_t *bytes, size_t length)
         return MH_ERR_ARGUMENT;
     }
     if (mh_acoustic_read(&track, acoustic->track.group.targets[0].target, bytes, length) != MH_OK ||
-        (track.group.count > 1 && !follows_groups(acoustic))) {
+        (track.group.count > 1 && !mh_acoustic_follows_groups(acoustic))) {
         return MH_ERR_CORRUPT;
     }
     go_on(acoustic, &track);
     return MH_OK;
 }
 
-static void restart(void *state)
+void mh_acoustic_restart(void *state)
 {
     struct mh_acoustic *acoustic = state;
     acoustic->tracking = false;
 }
 
-static enum mh_status among(void *state, uint32_t target, const struct mh_saved_track *others, size_t count)
+enum mh_status mh_acoustic_among(void *state, uint32_t target, const struct mh_saved_track *others, size_t count)
 {
     struct mh_acoustic *acoustic = state;
     struct mh_acoustic_track track;
@@ -424,149 +413,19 @@ enum mh_status mh_acoustic_begin(struct mh_acoustic *acoustic, uint32_t target, 
     if (!mh_finite(velocity.x) || !mh_finite(velocity.y)) {
         return MH_ERR_NOT_FINITE;
     }
-    if (!mh_within(position_sd_m, 1e-3f, 1e5f) || !mh_within(velocity_sd_mps, 1e-3f, 1e5f) ||
-        !mh_coordinate_valid(place->x_mm) || !mh_coordinate_valid(place->y_mm)) {
+    if (!mh_within(position_sd_m, MH_REAL(1e-3f), MH_REAL_UPTO(1e5f)) ||
+        !mh_within(velocity_sd_mps, MH_REAL(1e-3f), MH_REAL_UPTO(1e5f)) || !mh_coordinate_valid(place->x_mm) ||
+        !mh_coordinate_valid(place->y_mm)) {
         return MH_ERR_ARGUMENT;
     }
     const struct mh_sym2 positions = {mh_squared(position_sd_m), 0, mh_squared(position_sd_m)};
     const struct mh_sym2 velocities = {mh_squared(velocity_sd_mps), 0, mh_squared(velocity_sd_mps)};
     const struct mh_vec2 here = {0, 0};
     struct mh_acoustic_track track = {.origin = *place, .updated = time, .moving = true};
-    const enum mh_status status = set(&track, here, &positions, velocity, &velocities, 0);
+    const enum mh_status status = mh_acoustic_set(&track, here, &positions, velocity, &velocities, 0);
     if (status == MH_OK) {
         mh_group_single(&track.group, target);
         go_on(acoustic, &track);
     }
     return status;
 }
-
-enum mh_status mh_acoustic_begin_group(struct mh_acoustic *acoustic, uint32_t target, mh_tick time,
-                                       const struct mh_place *places, uint8_t count, struct mh_vec2 velocity,
-                                       mh_real position_sd_m, mh_real velocity_sd_mps)
-{
-    struct mh_vec2 members[MH_GROUP_MAX], centroid;
-    struct mh_group group;
-    if (acoustic == NULL || places == NULL || count < 2 || !follows_groups(acoustic)) {
-        return MH_ERR_ARGUMENT;
-    }
-    if (count > MH_GROUP_MAX) {
-        return MH_ERR_CAPACITY;
-    }
-    for (uint8_t i = 0; i < count; i++) {
-        members[i] = mh_place_relative(&places[i], &places[0]);
-    }
-    enum mh_status status = mh_group_found(&group, target, members, count, &centroid);
-    if (status == MH_OK) {
-        const struct mh_place place = mh_place_from_offset(&places[0], centroid);
-        status = mh_acoustic_begin(acoustic, target, time, &place, velocity, position_sd_m, velocity_sd_mps);
-    }
-    if (status == MH_OK) {
-        acoustic->track.group = group;
-        acoustic->track.mode = MH_TARGET_GROUP;
-    }
-    return status;
-}
-
-static enum mh_status join(void *state, const struct mh_saved_track *other)
-{
-    struct mh_acoustic *acoustic = state;
-    struct mh_acoustic_track second;
-    if (acoustic == NULL || other == NULL || other->bytes == NULL) {
-        return MH_ERR_ARGUMENT;
-    }
-    if (!acoustic->tracking) {
-        return MH_NONE;
-    }
-    if (mh_acoustic_read(&second, other->target, other->bytes, other->length) != MH_OK) {
-        return MH_ERR_CORRUPT;
-    }
-    struct mh_acoustic_track joined = acoustic->track;
-    if (mh_tick_before(second.updated, joined.updated) &&
-        mh_acoustic_advance(&second, acoustic->config.acceleration_psd, joined.updated) != MH_OK) {
-        return MH_ERR_CORRUPT;
-    }
-    const struct mh_vec2 from = mh_place_relative(&second.origin, &joined.origin), on = mh_acoustic_position(&second);
-    const struct mh_vec2 position = {from.x + on.x, from.y + on.y};
-    struct mh_vec2 centroid = mh_acoustic_position(&joined), velocity = {joined.filter.x[2], joined.filter.x[3]};
-    const struct mh_vec2 second_velocity = {second.filter.x[2], second.filter.x[3]};
-    const enum mh_status status =
-        mh_group_join(&joined.group, &centroid, &velocity, &second.group, position, second_velocity);
-    if (status != MH_OK) {
-        return status == MH_ERR_CAPACITY ? status : MH_ERR_CORRUPT;
-    }
-    joined.filter.x[0] = centroid.x;
-    joined.filter.x[1] = centroid.y;
-    joined.filter.x[2] = velocity.x;
-    joined.filter.x[3] = velocity.y;
-    joined.mode = MH_TARGET_GROUP;
-    acoustic->track = joined;
-    return MH_OK;
-}
-
-static enum mh_status part(const void *state, uint8_t number, uint32_t *target, uint8_t *bytes, size_t *length)
-{
-    const struct mh_acoustic *acoustic = state;
-    if (acoustic == NULL || target == NULL || bytes == NULL || length == NULL) {
-        return MH_ERR_ARGUMENT;
-    }
-    if (!acoustic->tracking) {
-        return MH_NONE;
-    }
-    const struct mh_vec2 velocity = {acoustic->track.filter.x[2], acoustic->track.filter.x[3]};
-    struct mh_acoustic_track own = acoustic->track;
-    struct mh_vec2 position, moving;
-    mh_real moving_sd;
-    const enum mh_status status =
-        mh_group_part(&acoustic->track.group, &acoustic->config.group, mh_acoustic_position(&acoustic->track), velocity,
-                      number, &own.group, &position, &moving, &moving_sd);
-    const mh_real position_variance = mh_squared(acoustic->config.group.fix_sd_m), variance = mh_squared(moving_sd);
-    const struct mh_sym2 positions = {position_variance, 0, position_variance}, velocities = {variance, 0, variance};
-    if (status != MH_OK || set(&own, position, &positions, moving, &velocities, 0) != MH_OK) {
-        return MH_NONE;
-    }
-    own.mode = own.group.count > 1 ? MH_TARGET_GROUP : MH_TARGET_SPARSE;
-    *target = own.group.targets[0].target;
-    *length = mh_acoustic_write(&own, bytes);
-    return MH_OK;
-}
-
-const struct mh_tracker mh_tracker_acoustic = {
-    .name = "acoustic",
-    .state_size = sizeof(struct mh_acoustic),
-    .config_size = sizeof(struct mh_acoustic_config),
-    .init = init_gn,
-    .step = step,
-    .predict = predict,
-    .save = save,
-    .load = load,
-    .restart = restart,
-    .among = among,
-    .join = join,
-    .part = part,
-};
-
-const struct mh_tracker mh_tracker_dm = {
-    .name = "dm",
-    .state_size = sizeof(struct mh_acoustic),
-    .config_size = sizeof(struct mh_acoustic_config),
-    .init = init_dm,
-    .step = step,
-    .predict = predict,
-    .save = save,
-    .load = load,
-    .restart = restart,
-    .among = among,
-};
-
-const struct mh_tracker mh_tracker_ml = {
-    .name = "ml",
-    .state_size = sizeof(struct mh_acoustic),
-    .config_size = sizeof(struct mh_acoustic_config),
-    .init = init_ml,
-    .step = step,
-    .predict = predict,
-    .save = save,
-    .load = load,
-    .restart = restart,
-    .among = among,
-};

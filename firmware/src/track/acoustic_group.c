@@ -1,4 +1,5 @@
 #include "acoustic_parts.h"
+#include "motehound/joint_sources.h"
 #include "motehound/source_count.h"
 
 /* One source leaves residuals of this mean square, in their variances, once in 250 times; several equal ones always. */

@@ -3,7 +3,31 @@
 #define MOTEHOUND_ACOUSTIC_PARTS_H
 
 #include "motehound/acoustic.h"
-#include "motehound/joint_sources.h"
+#include "motehound/sound_fix.h"
+
+/* ---- acoustic.c: what all of them do, as struct mh_tracker says ---- */
+
+struct mh_acoustic_kind;
+
+enum mh_status mh_acoustic_init(void *state, const struct mh_acoustic_kind *kind, const void *given, mh_tick interval);
+enum mh_status mh_acoustic_step(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
+                                struct mh_estimate *estimate);
+enum mh_status mh_acoustic_predict(const void *state, mh_tick time, struct mh_estimate *estimate);
+enum mh_status mh_acoustic_save(const void *state, uint8_t *bytes, size_t *length);
+enum mh_status mh_acoustic_load(void *state, const uint8_t *bytes, size_t length);
+void mh_acoustic_restart(void *state);
+enum mh_status mh_acoustic_among(void *state, uint32_t target, const struct mh_saved_track *others, size_t count);
+
+/* Of a struct mh_tracker all but its name, init, join and part. */
+#define MH_ACOUSTIC_TRACKER                                                                                            \
+    .state_size = sizeof(struct mh_acoustic), .config_size = sizeof(struct mh_acoustic_config),                        \
+    .step = mh_acoustic_step, .predict = mh_acoustic_predict, .save = mh_acoustic_save, .load = mh_acoustic_load,      \
+    .restart = mh_acoustic_restart, .among = mh_acoustic_among
+
+/* Position and velocity of a track with their covariances: of each, and of both, which is so many times that of the position. As mh_kalman_init. */
+enum mh_status mh_acoustic_set(struct mh_acoustic_track *track, struct mh_vec2 position,
+                               const struct mh_sym2 *covariance, struct mh_vec2 velocity,
+                               const struct mh_sym2 *velocities, mh_real both);
 
 /* ---- acoustic_saved.c: a track and its bytes ---- */
 
@@ -22,8 +46,8 @@ static inline struct mh_vec2 mh_acoustic_position(const struct mh_acoustic_track
 }
 
 /* At most MH_ACOUSTIC_FASTEST_MPS; zero where it is unknown: before the second fix, and below MH_ACOUSTIC_SLOWEST_MPS. */
-#define MH_ACOUSTIC_FASTEST_MPS 30.0f
-#define MH_ACOUSTIC_SLOWEST_MPS 1.0f
+#define MH_ACOUSTIC_FASTEST_MPS MH_REAL(30.0f)
+#define MH_ACOUSTIC_SLOWEST_MPS MH_REAL(1.0f)
 struct mh_vec2 mh_acoustic_velocity(const struct mh_acoustic_track *track);
 
 struct mh_sym2 mh_acoustic_covariance(const struct mh_acoustic_track *track);
@@ -58,10 +82,10 @@ void mh_acoustic_listen(const struct mh_acoustic *acoustic, bool jointly, const 
 
 /* With which of the others the own track, at an instant `seconds` after the last fix, may have exchanged its identity, for they were nearer to each
  * other than MH_ACOUSTIC_DISTINCT_M, or than `sds` standard deviations of their distance: bit i for others[i]. */
-#define MH_ACOUSTIC_DISTINCT_M 14.0f
+#define MH_ACOUSTIC_DISTINCT_M MH_REAL(14.0f)
 uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds, mh_real sds);
 
-/* ---- acoustic_fix.c: where it is at one instant ---- */
+/* ---- a kind: where a target is at one instant. acoustic_gn.c, acoustic_dm.c, acoustic_ml.c ---- */
 
 struct mh_acoustic_fix {
     struct mh_vec2 position;
@@ -89,9 +113,27 @@ struct mh_acoustic_kind {
     bool (*approach)(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene);
 };
 
+/* A group takes a fit of several sources. */
+static inline bool mh_acoustic_follows_groups(const struct mh_acoustic *acoustic)
+{
+    return acoustic->kind->locate_jointly != NULL;
+}
+
+/* ---- acoustic_fix.c: what they have in common ---- */
+
+/* How many of `count` nodes make a fix: config.strongest, or if that is 0 `nominal`. */
+size_t mh_acoustic_strongest(const struct mh_acoustic_config *config, size_t count, size_t nominal);
+
+/* The fix has config.fix_sd_m in each axis. */
+void mh_acoustic_state_nominal(const struct mh_acoustic_config *config, struct mh_acoustic_fix *fix);
+
+/* The mirror image that the prediction is nearer to, if `fix` is one. */
+void mh_acoustic_check_mirror(const struct mh_acoustic_config *config, const struct mh_acoustic_scene *scene,
+                              struct mh_acoustic_fix *fix);
+
 /* The fix's distance from where the own track is expected, chi-square. */
 mh_real mh_acoustic_surprise(const struct mh_acoustic_track *track, const struct mh_acoustic_fix *fix);
-#define MH_ACOUSTIC_GATE 25.0f
+#define MH_ACOUSTIC_GATE MH_REAL(25.0f)
 
 /* ---- acoustic_group.c: groups ---- */
 
@@ -106,11 +148,5 @@ struct mh_vec2 mh_acoustic_expected_centroid(const struct mh_acoustic_config *co
 /* The centroid of a group by the weights of the nodes, and its members as two sources of all its targets. As locate_jointly. */
 enum mh_status mh_acoustic_weigh(const struct mh_acoustic_config *config, struct mh_acoustic_scene *scene,
                                  mh_real seconds, struct mh_acoustic_fix *fix);
-
-extern const struct mh_acoustic_kind mh_acoustic_kind_gn, mh_acoustic_kind_dm, mh_acoustic_kind_ml;
-
-/* The mirror image that the prediction is nearer to, if `fix` is one. */
-void mh_acoustic_check_mirror(const struct mh_acoustic_config *config, const struct mh_acoustic_scene *scene,
-                              struct mh_acoustic_fix *fix);
 
 #endif

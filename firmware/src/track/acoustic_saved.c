@@ -3,10 +3,8 @@
 
 enum { MOTION = 4 }; /* states x, y, vx, vy */
 
-#define VELOCITY_UNIT (1.0f / 256.0f)
-#define VELOCITY_MOST 127.0f
-#define LEAST_VARIANCE 1e-12f
-#define MOST_VARIANCE 1e12f
+#define VELOCITY_UNITS 256 /* in 1 m/s */
+#define VELOCITY_MOST MH_REAL(127.0f)
 
 /* The first byte: mode, refused, moving */
 #define MODE_MASK 3u
@@ -16,26 +14,9 @@ enum { MOTION = 4 }; /* states x, y, vx, vy */
 #define KIND 0xa0u
 #define KIND_MASK 0xe0u
 
-/* The upper half of the number, rounded: 8 significant bits */
-static uint16_t half(mh_real value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return (uint16_t)((bits + 0x8000u) >> 16);
-}
-
-static mh_real whole(uint16_t half)
-{
-    const uint32_t bits = (uint32_t)half << 16;
-    mh_real value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 static void put_velocity(uint8_t **at, mh_real velocity)
 {
-    const mh_real units = mh_clamp(velocity, -VELOCITY_MOST, VELOCITY_MOST) / VELOCITY_UNIT;
-    mh_put_u16(at, (uint16_t)(int16_t)(units < 0 ? units - 0.5f : units + 0.5f));
+    mh_put_u16(at, (uint16_t)mh_real_round(VELOCITY_UNITS * mh_clamp(velocity, -VELOCITY_MOST, VELOCITY_MOST)));
 }
 
 size_t mh_acoustic_write(const struct mh_acoustic_track *track, uint8_t *bytes)
@@ -48,31 +29,12 @@ size_t mh_acoustic_write(const struct mh_acoustic_track *track, uint8_t *bytes)
     mh_put_u32(&at, (uint32_t)place.y_mm);
     put_velocity(&at, track->filter.x[2]);
     put_velocity(&at, track->filter.x[3]);
-    for (int i = 0; i < MH_PACKED_SIZE(MOTION); i++) {
-        mh_put_u16(&at, half(track->filter.ud[i]));
-    }
+    mh_kalman_write_factors(&track->filter, &at);
     for (int i = 0; i < 3; i++) {
         *at++ = track->speeds[i];
     }
     at += mh_group_write(&track->group, at);
     return (size_t)(at - bytes);
-}
-
-/* The factors U and D are a covariance whatever they are rounded to, as long as it is none that is absurd. */
-static bool sane(const struct mh_kalman *filter)
-{
-    for (int i = 0; i < MH_PACKED_SIZE(MOTION); i++) {
-        if (!mh_finite(filter->ud[i])) {
-            return false;
-        }
-    }
-    for (uint8_t i = 0; i < (uint8_t)MOTION; i++) {
-        if (!mh_within(filter->ud[MH_PACKED(i, i)], LEAST_VARIANCE * LEAST_VARIANCE, MOST_VARIANCE) ||
-            !mh_within(mh_kalman_variance(filter, i), LEAST_VARIANCE, MOST_VARIANCE)) {
-            return false;
-        }
-    }
-    return true;
 }
 
 enum mh_status mh_acoustic_read(struct mh_acoustic_track *track, uint32_t target, const uint8_t *bytes, size_t length)
@@ -90,16 +52,14 @@ enum mh_status mh_acoustic_read(struct mh_acoustic_track *track, uint32_t target
     read.updated = mh_get_u32(&at);
     read.origin.x_mm = mh_get_i32(&at);
     read.origin.y_mm = mh_get_i32(&at);
-    read.filter.x[2] = (mh_real)mh_get_i16(&at) * VELOCITY_UNIT;
-    read.filter.x[3] = (mh_real)mh_get_i16(&at) * VELOCITY_UNIT;
-    for (int i = 0; i < MH_PACKED_SIZE(MOTION); i++) {
-        read.filter.ud[i] = whole(mh_get_u16(&at));
-    }
+    read.filter.x[2] = mh_real_from_ratio(mh_get_i16(&at), VELOCITY_UNITS);
+    read.filter.x[3] = mh_real_from_ratio(mh_get_i16(&at), VELOCITY_UNITS);
+    const enum mh_status factors = mh_kalman_read_factors(&read.filter, &at);
     for (int i = 0; i < 3; i++) {
         read.speeds[i] = *at++;
     }
     if (read.mode > MH_TARGET_GROUP || !mh_coordinate_valid(read.origin.x_mm) ||
-        !mh_coordinate_valid(read.origin.y_mm) || !sane(&read.filter) ||
+        !mh_coordinate_valid(read.origin.y_mm) || factors != MH_OK ||
         mh_group_read(&read.group, target, at, length - MH_ACOUSTIC_HEADER_BYTES, &taken) != MH_OK ||
         taken != length - MH_ACOUSTIC_HEADER_BYTES) {
         return MH_ERR_CORRUPT;
@@ -129,15 +89,15 @@ enum mh_status mh_acoustic_advance(struct mh_acoustic_track *track, mh_real acce
 struct mh_vec2 mh_acoustic_velocity(const struct mh_acoustic_track *track)
 {
     struct mh_vec2 velocity = {track->filter.x[2], track->filter.x[3]};
-    const mh_real speed = mh_sqrt(mh_squared(velocity.x) + mh_squared(velocity.y));
-    mh_real scale = 1.0f;
+    const mh_real speed = mh_vec2_length(velocity);
+    mh_real scale = MH_REAL(1.0f);
     if (!track->moving || speed < MH_ACOUSTIC_SLOWEST_MPS) {
         scale = 0;
     } else if (speed > MH_ACOUSTIC_FASTEST_MPS) {
-        scale = MH_ACOUSTIC_FASTEST_MPS / speed;
+        scale = mh_div(MH_ACOUSTIC_FASTEST_MPS, speed);
     }
-    velocity.x *= scale;
-    velocity.y *= scale;
+    velocity.x = mh_mul(velocity.x, scale);
+    velocity.y = mh_mul(velocity.y, scale);
     return velocity;
 }
 
@@ -155,7 +115,7 @@ static mh_real largest_speed(const struct mh_acoustic_track *track)
     for (int i = 0; i < 3; i++) {
         largest = track->speeds[i] > largest ? track->speeds[i] : largest;
     }
-    return (mh_real)largest * MH_ACOUSTIC_SPEED_UNIT;
+    return mh_real_from_ratio(largest, MH_ACOUSTIC_SPEEDS_A_MPS);
 }
 
 mh_real mh_acoustic_largest_speed(const struct mh_acoustic *acoustic)
@@ -172,7 +132,7 @@ enum mh_status mh_acoustic_look(uint32_t target, const uint8_t *bytes, size_t le
     }
     const struct mh_vec2 velocity = mh_acoustic_velocity(&track);
     const mh_real seconds = mh_seconds_between(track.updated, time);
-    const struct mh_vec2 way = {seconds * velocity.x, seconds * velocity.y};
+    const struct mh_vec2 way = {mh_mul(seconds, velocity.x), mh_mul(seconds, velocity.y)};
     const struct mh_acoustic_summary found = {
         .place = mh_place_from_offset(&track.origin, way),
         .velocity = velocity,

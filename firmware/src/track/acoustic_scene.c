@@ -3,24 +3,22 @@
 
 /* Gaps between tracks, centroids less extents, in sensing ranges: who is NEAR is told apart; from SPARSE on they are followed as several, until there are SINGLE
  * between them. Half way between two that are NEAR apart hardly any node reports. */
-#define NEAR 3.5f
-#define SPARSE 2.5f
-#define SINGLE 3.0f
+#define NEAR MH_REAL(3.5f)
+#define SPARSE MH_REAL(2.5f)
+#define SINGLE MH_REAL(3.0f)
 
-#define LEAST_ENERGY 1.0f /* what a node reports */
-#define LEAST_SHARE 0.6f  /* of a target's sound at a node, units of energy */
-#define TRIGGER_M 10.0f  /* a share counts at nodes that expect the target within sensing range, give or take so much */
-#define UNEXPLAINED 1.5f /* so much more than the others' sound is that of a new target */
+#define LEAST_ENERGY MH_REAL(1.0f) /* what a node reports */
+#define LEAST_SHARE MH_REAL(0.6f)  /* of a target's sound at a node, units of energy */
+#define TRIGGER_M                                                                                                      \
+    MH_REAL(10.0f) /* a share counts at nodes that expect the target within sensing range, give or take so much */
+#define UNEXPLAINED MH_REAL(1.5f) /* so much more than the others' sound is that of a new target */
 
 /* Of a target that is not where it is expected: how far off its loudest node can be; and how far from the target that is, so that all others that hear it are
  * within reach_m of there, sensing ranges. */
-#define ASTRAY_SDS 3.0f
-#define LOUDEST_RANGES 0.5f
+#define ASTRAY_SDS MH_REAL(3.0f)
+#define LOUDEST_RANGES MH_REAL(0.5f)
 
-static mh_real distance(struct mh_vec2 a, struct mh_vec2 b)
-{
-    return mh_sqrt(mh_squared(a.x - b.x) + mh_squared(a.y - b.y));
-}
+static mh_real distance(struct mh_vec2 a, struct mh_vec2 b) { return mh_vec2_length(mh_vec2_between(b, a)); }
 
 static mh_real gap(const struct mh_group *a, struct mh_vec2 at_a, const struct mh_group *b, struct mh_vec2 at_b)
 {
@@ -51,8 +49,8 @@ static bool look_at(const struct mh_acoustic *acoustic, mh_tick time, const stru
     }
     const struct mh_vec2 from = mh_place_relative(&track.origin, &own->origin), on = mh_acoustic_position(&track);
     other->target = saved->target;
-    other->position.x = from.x + on.x;
-    other->position.y = from.y + on.y;
+    other->position.x = mh_add(from.x, on.x);
+    other->position.y = mh_add(from.y, on.y);
     other->velocity = mh_acoustic_velocity(&track);
     other->covariance = mh_acoustic_covariance(&track);
     other->group = track.group;
@@ -79,7 +77,7 @@ static void mark_near(struct mh_acoustic_scene *scene, mh_real near_m)
 void mh_acoustic_look_around(const struct mh_acoustic *acoustic, mh_tick time, struct mh_acoustic_scene *scene)
 {
     const mh_real range = acoustic->config.sensing_range_m;
-    mh_real least = INFINITY;
+    mh_real least = MH_REAL_MAX;
     scene->others_count = 0;
     for (uint8_t i = 0; i < acoustic->others_count; i++) {
         struct mh_acoustic_other *other = &scene->others[scene->others_count];
@@ -89,16 +87,16 @@ void mh_acoustic_look_around(const struct mh_acoustic *acoustic, mh_tick time, s
             scene->others_count++;
         }
     }
-    mark_near(scene, NEAR * range);
+    mark_near(scene, mh_mul(NEAR, range));
     scene->alone = true;
     for (uint8_t i = 0; i < scene->others_count; i++) {
         scene->alone = scene->alone && !scene->others[i].near;
     }
     if (scene->own.group.count > 1) {
         scene->own.mode = MH_TARGET_GROUP;
-    } else if (least < SPARSE * range) {
+    } else if (least < mh_mul(SPARSE, range)) {
         scene->own.mode = MH_TARGET_SPARSE;
-    } else if (least > SINGLE * range || scene->own.mode == MH_TARGET_GROUP) {
+    } else if (least > mh_mul(SINGLE, range) || scene->own.mode == MH_TARGET_GROUP) {
         scene->own.mode = MH_TARGET_SINGLE;
     }
 }
@@ -106,7 +104,7 @@ void mh_acoustic_look_around(const struct mh_acoustic *acoustic, mh_tick time, s
 /* Among a group's members the distance to the nearest one. */
 static mh_real distance_to(const struct mh_group *group, struct mh_vec2 centroid, struct mh_vec2 place)
 {
-    mh_real least = INFINITY;
+    mh_real least = MH_REAL_MAX;
     for (uint8_t i = 0; i < group->count; i++) {
         least = mh_min(least, distance(mh_group_place(group, centroid, i), place));
     }
@@ -137,10 +135,10 @@ static mh_real unexplained(const struct mh_acoustic *acoustic, const struct mh_a
         const struct mh_acoustic_other *other = &scene->others[i];
         for (uint8_t j = 0; j < other->group.count; j++) {
             const mh_real away = distance(mh_group_place(&other->group, other->position, j), heard->place);
-            explained += mh_sound_energy(&acoustic->config.sound, away * away);
+            explained = mh_add(explained, mh_sound_energy(&acoustic->config.sound, mh_squared(away)));
         }
     }
-    return heard->energy > UNEXPLAINED * explained ? heard->energy - explained : 0;
+    return heard->energy > mh_mul(UNEXPLAINED, explained) ? heard->energy - explained : 0;
 }
 
 /* What a measurement says of the own target; an energy of 0 if nothing. */
@@ -174,10 +172,10 @@ static void listen_alone(const struct mh_acoustic *acoustic, const struct mh_mea
                          struct mh_acoustic_scene *scene)
 {
     const struct mh_acoustic_config *config = &acoustic->config;
-    mh_real astray = INFINITY;
+    mh_real astray = MH_REAL_MAX;
     if (acoustic->tracking) {
         const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
-        astray = config->reach_m + ASTRAY_SDS * mh_sqrt(mh_max(covariance.xx, covariance.yy));
+        astray = mh_add(config->reach_m, mh_mul(ASTRAY_SDS, mh_sqrt(mh_max(covariance.xx, covariance.yy))));
     }
     struct mh_heard loudest = {.energy = 0};
     bool expected = false;
@@ -194,7 +192,7 @@ static void listen_alone(const struct mh_acoustic *acoustic, const struct mh_mea
     for (size_t i = 0; i < count && loudest.energy > 0; i++) {
         const struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
         const mh_real away = distance(heard.place, loudest.place);
-        if (heard.energy > 0 && away <= config->reach_m + LOUDEST_RANGES * config->sensing_range_m &&
+        if (heard.energy > 0 && away <= mh_add(config->reach_m, mh_mul(LOUDEST_RANGES, config->sensing_range_m)) &&
             !is_others(scene, away, heard.place)) {
             mh_heard_insert(scene->heard, &scene->heard_count, MH_ACOUSTIC_HEARD_MAX, &heard);
         }
@@ -209,7 +207,7 @@ static void listen_among(const struct mh_acoustic *acoustic, bool jointly, const
     const bool in_shares = !jointly && config->separation == MH_SEPARATION_DECOMPOSITION;
     const mh_real reach = in_shares ? mh_min(config->reach_m, config->sensing_range_m + TRIGGER_M) : config->reach_m;
     /* n targets are heard farther away */
-    const mh_real group_reach = reach * mh_sqrt((mh_real)scene->own.group.count);
+    const mh_real group_reach = mh_mul(reach, mh_sqrt(mh_real_from_int(scene->own.group.count)));
     for (size_t i = 0; i < count; i++) {
         struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
         const mh_real off = distance_to(&scene->own.group, mh_acoustic_position(&scene->own), heard.place);
@@ -220,7 +218,7 @@ static void listen_among(const struct mh_acoustic *acoustic, bool jointly, const
             near = other->near && distance_to(&other->group, other->position, heard.place) <= reach;
         }
         if (near && in_shares) {
-            heard.energy *= own_share(acoustic, scene, heard.place);
+            heard.energy = mh_mul(heard.energy, own_share(acoustic, scene, heard.place));
             near = heard.energy >= LEAST_SHARE;
         }
         if (near && heard.energy > 0) {
@@ -248,16 +246,16 @@ uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real se
     const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     for (uint8_t i = 0; i < scene->others_count; i++) {
         const struct mh_acoustic_other *other = &scene->others[i];
-        const struct mh_vec2 away = {other->position.x - position.x, other->position.y - position.y};
-        const struct mh_vec2 speed = {other->velocity.x - velocity.x, other->velocity.y - velocity.y};
-        const mh_real square = mh_squared(speed.x) + mh_squared(speed.y);
+        const struct mh_vec2 away = mh_vec2_between(position, other->position);
+        const struct mh_vec2 speed = mh_vec2_between(velocity, other->velocity);
+        const mh_wide square = mh_vec2_square(speed);
         /* since the last fix they were nearest to each other so long ago */
-        const mh_real ago = square > 0 ? mh_clamp((away.x * speed.x + away.y * speed.y) / square, 0, seconds) : 0;
-        const mh_real x = away.x - ago * speed.x, y = away.y - ago * speed.y;
-        const mh_real apart =
-            mh_sqrt(x * x + y * y) - mh_group_extent(&scene->own.group) - mh_group_extent(&other->group);
-        const mh_real variance = 0.5f * (covariance.xx + covariance.yy + other->covariance.xx + other->covariance.yy);
-        if (apart < mh_max(MH_ACOUSTIC_DISTINCT_M, sds * mh_sqrt(variance))) {
+        const mh_real ago = square > 0 ? mh_clamp(mh_wide_ratio(mh_vec2_dot(away, speed), square), 0, seconds) : 0;
+        const mh_real apart = mh_vec2_length(mh_vec2_along(away, -ago, speed)) - mh_group_extent(&scene->own.group) -
+                              mh_group_extent(&other->group);
+        const mh_real variance = mh_add(mh_add(mh_add(covariance.xx / 2, covariance.yy / 2), other->covariance.xx / 2),
+                                        other->covariance.yy / 2);
+        if (apart < mh_max(MH_ACOUSTIC_DISTINCT_M, mh_mul(sds, mh_sqrt(variance)))) {
             exchanged = (uint16_t)(exchanged | 1u << i);
         }
     }

@@ -14,13 +14,14 @@ static size_t heard_count;
 /* Where the field's (0, 0) is. */
 static const struct mh_place corner = {700000000, -300000000, 0};
 
-static mh_real energy_at(int i, int j, const struct mh_vec2 *targets, int count)
+static float energy_at(int i, int j, const struct mh_vec2 *targets, int count)
 {
-    mh_real energy = 0;
+    float energy = 0;
     for (int k = 0; k < count; k++) {
-        const mh_real square =
-            mh_squared(30.0f * (mh_real)i - targets[k].x) + mh_squared(30.0f * (mh_real)j - targets[k].y);
-        energy += 1600.0f / mh_max(square, 1.0f);
+        const float x = 30.0f * (float)i - mh_real_to_float(targets[k].x);
+        const float y = 30.0f * (float)j - mh_real_to_float(targets[k].y);
+        const float square = x * x + y * y;
+        energy += 1600.0f / (square > 1.0f ? square : 1.0f);
     }
     return energy;
 }
@@ -30,7 +31,7 @@ static void hear(mh_tick time, const struct mh_vec2 *targets, int count)
     heard_count = 0;
     for (int i = -2; i < 30; i++) {
         for (int j = -2; j < 16 && heard_count < LISTENERS_MAX; j++) {
-            const mh_real energy = energy_at(i, j, targets, count);
+            const float energy = energy_at(i, j, targets, count);
             if (energy < 1.0f) {
                 continue;
             }
@@ -40,7 +41,7 @@ static void hear(mh_tick time, const struct mh_vec2 *targets, int count)
             m->place.x_mm = corner.x_mm + (int32_t)30000 * i;
             m->place.y_mm = corner.y_mm + (int32_t)30000 * j;
             m->time = time;
-            m->value = mh_q20_from_real(energy);
+            m->value = mh_q20_from_real(mh_real_from_float(energy));
         }
     }
 }

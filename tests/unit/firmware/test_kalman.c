@@ -37,6 +37,36 @@ static mh_real draw(void)
     return mh_real_from_float((float)(int32_t)(seed >> 8) * (2.0f / 16777216.0f) - 1.0f);
 }
 
+/* P = (5 1; 1 2) = U D U' with D = (4.5, 2), U_12 = 1/2: exact in 8 bits, so the same bytes in both arithmetics, and the same P after them */
+static void factors_as_bytes(void)
+{
+    static const uint8_t expected[] = {0x40, 0x90, 0x3f, 0x00, 0x40, 0x00};
+    static const uint8_t wrong[][2] = {
+        {0, 0x80}, {0, 0}, {0, 0x7f}, {2, 0x7f}}; /* below 0, 0, beyond all numbers, U too */
+    struct mh_kalman filter, read = {.n = 2, .moving = 2};
+    const mh_real x[] = {0, 0}, P[] = {MH_REAL(5.0f), ONE, MH_REAL(2.0f)};
+    uint8_t bytes[MH_KALMAN_FACTOR_BYTES(2)], *end = bytes;
+    const uint8_t *at = bytes;
+    mh_real after[3];
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_init(&filter, 2, x, P));
+    mh_kalman_write_factors(&filter, &end);
+    TEST_ASSERT_EQUAL_UINT(sizeof expected, end - bytes);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, bytes, sizeof expected);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_kalman_read_factors(&read, &at));
+    TEST_ASSERT_TRUE(at == end);
+    mh_kalman_covariance(&read, after);
+    assert_near(1e-5f, 5, after[0]);
+    assert_near(1e-5f, 1, after[1]);
+    assert_near(1e-5f, 2, after[2]);
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        memcpy(bytes, expected, sizeof bytes);
+        bytes[wrong[i][0]] = wrong[i][1];
+        bytes[wrong[i][0] + 1] = i == 1 ? 0 : 0xff;
+        at = bytes;
+        TEST_ASSERT_EQUAL_INT(MH_ERR_CORRUPT, mh_kalman_read_factors(&read, &at));
+    }
+}
+
 /* P = 4, R = 1: the gain is 4/5, the variance after it 4/5 */
 static void one_state_by_hand(void)
 {
@@ -329,6 +359,7 @@ int main(void)
     RUN_TEST(agrees_with_the_textbook);
     RUN_TEST(diffuse_prior);
     RUN_TEST(constant_velocity_model);
+    RUN_TEST(factors_as_bytes);
     RUN_TEST(bad_input_changes_nothing);
 #if !MH_REAL_FIXED
     RUN_TEST(what_does_not_fit_changes_nothing);
