@@ -119,6 +119,8 @@ set(MOTEHOUND_FIXED_POINT_HOST_TESTS # under tests/unit/host_sim
 )
 # workloads of tests/bench
 set(MOTEHOUND_FIXED_POINT_BENCHES
+  acoustic_dm
+  acoustic_dm_three
   centroid
   centroid_few
   kalman

@@ -81,6 +81,11 @@ class Images(unittest.TestCase):
                 self.assertTrue(50 < stack < 2048, stack)
                 self.assertTrue(0 < identity['ram_static'] < identity['ram_size'] - stack)
 
+    def test_a_head_that_hears(self):
+        with board('cluster_head_dm') as head:
+            identity = head.identify()
+            self.assertEqual((identity['passed'], identity['protocol'], identity['tracker']), (1, 'prince', 'dm'))
+
     def test_it_runs_free(self):
         """By its own clock it sends a beacon, and asks for samples."""
         with board('cluster_head_luo') as head:
