@@ -1,6 +1,6 @@
 #!/bin/bash
 # Motes on emulated boards among those of this process: the same track. $BUILDS is the folder of all builds, whose firmware/apps have the images, $APPS the
-# images of this build, $ARITHMETIC empty or -fixed. Boards that are not there are left out, unless $ALL_BOARDS says that they must be.
+# images of this build, $ARITHMETIC empty or -fixed. Boards that are not there are left out, unless $ALL_BOARDS says that they must be; with $NO_BOARDS all are.
 if [ -z "$IN_OWN_NETWORK" ]; then
     own=$(dirname "$0")/../network/own_network.sh
     if bash -c '. "$0"' "$own" >/dev/null 2>&1; then
@@ -12,7 +12,7 @@ if [ -z "$IN_OWN_NETWORK" ]; then
 fi
 . "$(dirname "$0")/../network/common.sh"
 for board in atmega128 cortex-m0; do
-    if [ -e "$BUILDS/$board$ARITHMETIC/firmware/apps/cluster_head_luo" ]; then
+    if [ -z "$NO_BOARDS" ] && [ -e "$BUILDS/$board$ARITHMETIC/firmware/apps/cluster_head_luo" ]; then
         mkdir -p images
         ln -s "$BUILDS/$board$ARITHMETIC/firmware/apps" "images/$board$ARITHMETIC"
     fi

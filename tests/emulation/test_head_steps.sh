@@ -1,12 +1,12 @@
 #!/bin/bash
 # The default trackers of releases as whole images on the Cortex-M4F and M33, heads of a run: how long their steps take, an instruction a cycle, and that the
 # track is the same. $BUILDS is the folder of all builds, whose firmware/apps have the images. Boards that are not there are left out, unless $ALL_BOARDS says
-# that they must be.
+# that they must be; with $NO_BOARDS all are.
 . "$(dirname "$0")/../network/common.sh"
 boards=()
 mkdir images
 for board in cortex-m4f cortex-m33; do
-    if command -v qemu-system-arm >/dev/null && [ -e "$BUILDS/$board/firmware/apps/cluster_head_gas" ]; then
+    if [ -z "$NO_BOARDS" ] && command -v qemu-system-arm >/dev/null && [ -e "$BUILDS/$board/firmware/apps/cluster_head_gas" ]; then
         ln -s "$BUILDS/$board/firmware/apps" "images/$board"
         boards+=("$board")
     elif [ -n "$ALL_BOARDS" ]; then
