@@ -36,11 +36,13 @@ close() {
         END {exit bad || lines < 3}' || complain "$2/track.csv is not that of $1"
 }
 
-[ ${#boards[@]} -eq 0 ] || accepted "$MOTEHOUND" run luo_exp1 --out diffusion
+declare -A speed=([cortex-m4f]=1 [cortex-m33]=4) # of the source, m/s: the whole minute and a half on one board is enough
 for board in "${boards[@]}"; do
-    accepted "$MOTEHOUND" run luo_exp1 --out "diffusion_$board" --emulate "1280=$board"
+    release=(luo_exp1 --set "source.speed_mps=${speed[$board]}")
+    accepted "$MOTEHOUND" run "${release[@]}" --out "native_$board"
+    accepted "$MOTEHOUND" run "${release[@]}" --out "diffusion_$board" --emulate "1280=$board"
     grep '^node' out.txt
-    close diffusion "diffusion_$board" 1e-3
+    close "native_$board" "diffusion_$board" 1e-3
     in_time "diffusion_$board"
 done
 
@@ -50,7 +52,7 @@ if [ ${#boards[@]} -gt 0 ]; then
     for head in 35 72 12 17 7 46 70 42 23 44 75; do
         on+=(--emulate "$head=${boards[${#on[@]} / 2 % ${#boards[@]}]}")
     done
-    accepted "$MOTEHOUND" run zhang_real --out gas "${on[@]}"
+    accepted "$MOTEHOUND" run zhang_real --set source.duration_s=75 --out gas "${on[@]}"
     grep '^node' out.txt
     in_time gas
     tail -1 gas/track.csv | cut -d, -f4,5 | awk -F, '{exit !(($1 - 50) ^ 2 + ($2 - 200) ^ 2 < 2 ^ 2)}' || complain "the leak is not found"
