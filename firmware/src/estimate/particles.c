@@ -24,18 +24,47 @@ enum mh_status mh_particles_init(struct mh_particles *particles, uint16_t count,
     return MH_OK;
 }
 
+#ifdef __AVR__ /* whose compiler calls a function, which takes twice as long */
+__attribute__((always_inline)) static inline uint32_t wide(uint16_t a, uint16_t b)
+{
+    uint32_t result;
+    /* clang-format off */
+    __asm__("mul %A[a], %A[b]\n\tmovw %A[result], r0\n\tmul %B[a], %B[b]\n\tmovw %C[result], r0\n\t"
+            "mul %B[a], %A[b]\n\tadd %B[result], r0\n\tadc %C[result], r1\n\tadc %D[result], %[zero]\n\t"
+            "mul %A[a], %B[b]\n\tadd %B[result], r0\n\tadc %C[result], r1\n\tadc %D[result], %[zero]\n\tclr __zero_reg__"
+            : [result] "=&r"(result)
+            : [a] "r"(a), [b] "r"(b), [zero] "r"((uint8_t)0)
+            : "r0");
+    /* clang-format on */
+    return result;
+}
+#else
+static uint32_t wide(uint16_t a, uint16_t b) { return (uint32_t)a * b; }
+#endif
+
 /* of fractions of 16 bits */
-static uint16_t product(uint16_t a, uint16_t b) { return (uint16_t)((uint32_t)a * b >> 16); }
+static uint16_t product(uint16_t a, uint16_t b) { return (uint16_t)(wide(a, b) >> 16); }
+
+static uint32_t square_of(int16_t a) { return wide((uint16_t)(a < 0 ? -a : a), (uint16_t)(a < 0 ? -a : a)); }
 
 /* a * part / 2^16 */
-static uint32_t part_of(uint32_t a, uint16_t part) { return (a >> 16) * part + ((uint32_t)(uint16_t)a * part >> 16); }
+static uint32_t part_of(uint32_t a, uint16_t part)
+{
+    return wide((uint16_t)(a >> 16), part) + (wide((uint16_t)a, part) >> 16);
+}
+
+static int16_t limited(int16_t a) { return a > LIMIT ? LIMIT : a < -LIMIT ? -LIMIT : a; }
 
 /* A length, at most the limit. */
 static int16_t to_units(const struct mh_particles *particles, mh_real length)
 {
-    const mh_real limit = mh_real_from_bits((int32_t)LIMIT << (MH_REAL_BITS - particles->bits));
-    const int32_t half = MH_REAL_ONE / 2 >> particles->bits;
-    return (int16_t)((mh_real_to_bits(mh_clamp(length, -limit, limit)) + half) >> (MH_REAL_BITS - particles->bits));
+    const int32_t bits = mh_real_to_bits(length);
+    const int16_t metres = (int16_t)(bits >> MH_REAL_BITS), most = LIMIT >> particles->bits;
+    if (metres > most || metres < -most - 1) {
+        return metres < 0 ? -LIMIT : LIMIT;
+    }
+    const int32_t scaled = (int32_t)((uint32_t)bits << particles->bits);
+    return limited((int16_t)((scaled + MH_REAL_ONE / 2) >> MH_REAL_BITS));
 }
 
 /* Square root, rounded: of the number as m 2^e, m from 1/2 to 1, by a polynomial of 1 - m. */
@@ -87,15 +116,19 @@ static void direction(uint16_t half, int16_t *along, int16_t *across)
 }
 
 /* of a component of a direction with another, 14 fractional bits */
-static int16_t turned(int16_t a, int16_t b) { return (int16_t)((int32_t)a * b >> 16); }
+static int16_t turned(int16_t a, int16_t b)
+{
+    const uint16_t of_bits =
+        product((uint16_t)a, (uint16_t)b); /* those of a and b are 2^16 more where these are negative */
+    return (int16_t)(of_bits - (a < 0 ? (uint16_t)b : 0u) - (b < 0 ? (uint16_t)a : 0u));
+}
 
 /* a direction with 14 fractional bits, to a length */
 static int16_t stretched(int16_t direction, uint16_t length)
 {
-    return (int16_t)((int32_t)direction * (uint16_t)(4 * length) >> 16);
+    const uint16_t quadruple = (uint16_t)(4 * length);
+    return (int16_t)(product((uint16_t)direction, quadruple) - (direction < 0 ? quadruple : 0u));
 }
-
-static int16_t limited(int16_t a) { return a > LIMIT ? LIMIT : a < -LIMIT ? -LIMIT : a; }
 
 /* a component of a unit vector, 15 fractional bits */
 static int16_t to_axis(mh_real a)
@@ -147,10 +180,10 @@ void mh_particles_add_range(struct mh_particles *particles, uint16_t from, struc
             continue;
         }
         const int16_t dx = (int16_t)(particles->x[i] - at_x), dy = (int16_t)(particles->y[i] - at_y);
-        const uint16_t distance = root((uint32_t)((int32_t)dx * dx) + (uint32_t)((int32_t)dy * dy));
+        const uint16_t distance = root(square_of(dx) + square_of(dy));
         const bool longer = reading >= 0 && (uint16_t)reading > distance;
         const uint16_t residual = (uint16_t)(longer ? (uint16_t)reading - distance : distance - (uint16_t)reading);
-        const uint32_t square = (uint32_t)residual * residual, sum = particles->weight[i] + square;
+        const uint32_t square = wide(residual, residual), sum = particles->weight[i] + square;
         particles->weight[i] = sum < square ? MH_PARTICLE_SUM_MAX : sum;
     }
 }
