@@ -30,7 +30,7 @@ mh_real mh_metres(int32_t mm)
     if (mm > 32767999 || mm < -32767999) {
         return mm < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
     }
-    const int32_t whole = mh_part(8589935, mm), rest = mm - 125 * whole;
+    const int32_t whole = mh_real_to_bits(mh_part(8589935, mh_real_from_bits(mm))), rest = mm - 125 * whole;
     return mh_real_from_bits((int32_t)((uint32_t)whole * 8192 + (uint32_t)((rest * 4294967 + 32768) >> 16)));
 }
 #endif

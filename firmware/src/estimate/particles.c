@@ -64,7 +64,7 @@ static int16_t to_units(const struct mh_particles *particles, mh_real length)
         return metres < 0 ? -LIMIT : LIMIT;
     }
     const int32_t scaled = (int32_t)((uint32_t)bits << particles->bits);
-    return limited((int16_t)((scaled + MH_REAL_ONE / 2) >> MH_REAL_BITS));
+    return limited((int16_t)((scaled + ((int32_t)1 << (MH_REAL_BITS - 1))) >> MH_REAL_BITS));
 }
 
 /* Square root, rounded: of the number as m 2^e, m from 1/2 to 1, by a polynomial of 1 - m. */
