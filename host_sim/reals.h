@@ -5,6 +5,9 @@
 #include "motehound/real.h"
 
 #include <math.h>
+#include <stdbool.h>
+
+static inline const char *arithmetic_name(bool fixed) { return fixed ? "fixed point" : "floating point"; }
 
 /* The nearest real; saturated. */
 static inline mh_real real_of(double a)

@@ -28,8 +28,8 @@ struct session {
     struct batch batch;
     const char *out;
     const char *bus_url;
-    unsigned workers, joining; /* that host the motes, on bus_url; neither: this process does */
-    bool respawn;
+    unsigned workers, joining;  /* that host the motes, on bus_url; neither: this process does */
+    bool mixed, respawn;        /* see struct worker_pool_config */
     struct emulation emulation; /* motes that live on boards */
     double drop_share;          /* of the messages to and from workers */
     bool log;

@@ -11,7 +11,8 @@
 static const char help[] =
     "motehound run SCENARIO [--set key=value]... [--runs N] [--seed S] [--jobs J] [--out DIR] [--bus URL] [--log] "
     "[--sweep]\n"
-    "              [--pace X] [--workers N] [--join N] [--respawn] [--emulate NODE=BOARD[,NODE=BOARD]...] [--images "
+    "              [--pace X] [--workers N] [--join N] [--mixed] [--respawn] [--emulate NODE=BOARD[,NODE=BOARD]...] "
+    "[--images "
     "DIR]\n"
     "\n"
     "Simulates a network of motes. SCENARIO is a YAML file or a name of `motehound list`.\n"
@@ -28,6 +29,7 @@ static const char help[] =
     "  --sweep          do all runs for each value of the scenario's `sweep`, into DIR/VALUE\n"
     "  --workers N      let the motes live in N other processes of this machine, over --bus URL\n"
     "  --join N         wait for N workers more, started elsewhere with `motehound worker --bus URL`\n"
+    "  --mixed          workers may be of either arithmetic: some motes in floating point, others in fixed point\n"
     "  --respawn        replace a worker that dies (it repeats all that was done), instead of ending the run\n"
     "  --emulate NODE=BOARD[,NODE=BOARD]...\n"
     "                   let these motes live on emulated boards, with the images that are made for them: atmega128,\n"
@@ -48,7 +50,7 @@ struct run_options {
     const char *scenario, *out, *bus_url;
     uint64_t runs, seed, jobs, workers, joining;
     double drop_share, pace;
-    bool log, sweep, respawn, help;
+    bool log, sweep, mixed, respawn, help;
     const char *images;
     struct emulation emulation;
 };
@@ -65,6 +67,7 @@ enum {
     PACE,
     WORKERS,
     JOIN,
+    MIXED,
     RESPAWN,
     EMULATE,
     IMAGES,
@@ -74,14 +77,23 @@ enum {
 };
 
 static const struct option_rule rules[RULES] = {
-    [SET] = {"--set", true, true},           [RUNS] = {"--runs", true, false},
-    [SEED] = {"--seed", true, false},        [JOBS] = {"--jobs", true, false},
-    [OUT] = {"--out", true, false},          [BUS] = {"--bus", true, false},
-    [LOG] = {"--log", false, false},         [SWEEP] = {"--sweep", false, false},
-    [WORKERS] = {"--workers", true, false},  [JOIN] = {"--join", true, false},
-    [RESPAWN] = {"--respawn", false, false}, [DROP_SHARE] = {"--drop-share", true, false},
-    [PACE] = {"--pace", true, false},        [HELP] = {"--help", false, false},
-    [EMULATE] = {"--emulate", true, true},   [IMAGES] = {"--images", true, false},
+    [SET] = {"--set", true, true},
+    [RUNS] = {"--runs", true, false},
+    [SEED] = {"--seed", true, false},
+    [JOBS] = {"--jobs", true, false},
+    [OUT] = {"--out", true, false},
+    [BUS] = {"--bus", true, false},
+    [LOG] = {"--log", false, false},
+    [SWEEP] = {"--sweep", false, false},
+    [WORKERS] = {"--workers", true, false},
+    [JOIN] = {"--join", true, false},
+    [MIXED] = {"--mixed", false, false},
+    [RESPAWN] = {"--respawn", false, false},
+    [DROP_SHARE] = {"--drop-share", true, false},
+    [PACE] = {"--pace", true, false},
+    [HELP] = {"--help", false, false},
+    [EMULATE] = {"--emulate", true, true},
+    [IMAGES] = {"--images", true, false},
 };
 
 static int option_pace(const char *value, double *pace, char *error)
@@ -145,6 +157,9 @@ static int read_options(struct command *command, struct run_options *options)
         case JOIN:
             status = option_count("--join", value, 1, 64, &options->joining, error, COMMAND_ERROR_SIZE);
             break;
+        case MIXED:
+            options->mixed = true;
+            break;
         case RESPAWN:
             options->respawn = true;
             break;
@@ -174,9 +189,11 @@ static int read_options(struct command *command, struct run_options *options)
     if (options->pace > 0 && strncmp(options->bus_url, "memq:", 5) == 0) {
         return fail(error, COMMAND_ERROR_SIZE, "--pace: expected --bus URL too, found none that anyone could look on");
     }
-    if (options->workers + options->joining == 0 && (options->respawn || options->drop_share > 0)) {
+    if (options->workers + options->joining == 0 && (options->mixed || options->respawn || options->drop_share > 0)) {
         return fail(error, COMMAND_ERROR_SIZE, "%s: expected --workers or --join too, found neither",
-                    options->respawn ? "--respawn" : "--drop-share");
+                    options->mixed     ? "--mixed"
+                    : options->respawn ? "--respawn"
+                                       : "--drop-share");
     }
     if (options->workers + options->joining > 0 && options->jobs > 1) {
         return fail(error, COMMAND_ERROR_SIZE, "--workers: expected one run at a time, found --jobs %llu",
@@ -290,6 +307,7 @@ int command_run(struct command *command)
         .bus_url = options.bus_url,
         .workers = (unsigned)options.workers,
         .joining = (unsigned)options.joining,
+        .mixed = options.mixed,
         .respawn = options.respawn,
         .emulation = options.emulation,
         .drop_share = options.drop_share,

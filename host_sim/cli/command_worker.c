@@ -20,8 +20,8 @@ static const char help[] =
     "  --drop-share P   for tests: drop this share of the messages sent\n"
     "  --help           this text\n"
     "\n"
-    "Both must be the same version of motehound. `motehound run --workers N` starts workers of this machine by\n"
-    "itself. See docs/workers.md.\n";
+    "Both must be the same version of motehound, and compute in the same arithmetic unless the run has --mixed.\n"
+    "`motehound run --workers N` starts workers of this machine by itself. See docs/workers.md.\n";
 
 enum { BUS, SESSION, KEY, IMAGES, DROP_SHARE, HELP, RULES };
 

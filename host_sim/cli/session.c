@@ -184,6 +184,7 @@ static int execute_on_workers(struct session *session, struct results *results, 
                                               .images = session->emulation.images,
                                               .local = session->workers,
                                               .joining = session->joining,
+                                              .mixed = session->mixed,
                                               .respawn = session->respawn,
                                               .drop_share = session->drop_share,
                                               .stop = session->batch.stop};

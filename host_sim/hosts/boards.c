@@ -490,6 +490,9 @@ static int check_mote(struct boards *boards, const struct board *board)
     return 0;
 }
 
+/* Any board can be had in fixed point; a simulator in fixed point has no other. */
+static bool is_fixed(const char *board) { return MH_REAL_FIXED || strstr(board, "-fixed"); }
+
 /* The image for what the mote is -> board->result.image. */
 static int choose_image(struct boards *boards, struct board *board)
 {
@@ -522,12 +525,16 @@ static int check_identity(struct boards *boards, struct board *board)
     const struct host_mote *what = &board->what;
     const struct mh_line_identity *identity = &board->identity;
     const char *tracker = what->head ? what->head->tracker->name : identity->tracker;
+    const bool fixed = is_fixed(what->board);
     char text[300] = "";
     if (identity->version != MH_LINE_VERSION || strcmp(identity->library, MOTEHOUND_VERSION) != 0) {
         snprintf(text, sizeof text, "has an image of version %.40s (line %u), expected %s (line %u)", identity->library,
                  identity->version, MOTEHOUND_VERSION, MH_LINE_VERSION);
     } else if (!identity->self_test_passed) {
         snprintf(text, sizeof text, "fails its self-test");
+    } else if (identity->fixed != fixed) {
+        snprintf(text, sizeof text, "has an image in %s, expected %s", arithmetic_name(identity->fixed),
+                 arithmetic_name(fixed));
     } else if (strcmp(identity->protocol, what->protocol->name) != 0) {
         snprintf(text, sizeof text, "has an image of the protocol %.40s, expected %s", identity->protocol,
                  what->protocol->name);

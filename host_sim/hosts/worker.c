@@ -1,6 +1,7 @@
 #include "hosts/worker.h"
 
 #include "hosts/boards.h"
+#include "reals.h"
 #include "roster.h"
 #include "scenario/text.h"
 
@@ -357,7 +358,8 @@ static void join(struct worker *worker, int64_t session)
     name[sizeof name - 30] = '\0';
     const size_t length = strlen(name);
     snprintf(name + length, sizeof name - length, ", process %ld", (long)getpid());
-    const motehound_worker_join_t message = {session, worker->number, name, (char *)worker->config->version};
+    const motehound_worker_join_t message = {session, worker->number, name, (char *)worker->config->version,
+                                             (char *)arithmetic_name(MH_REAL_FIXED)};
     uint8_t *bytes = worker_encode_join(&message, &size);
     if (bytes) {
         worker_link_publish(worker->link, WORKER_JOIN, bytes, size);

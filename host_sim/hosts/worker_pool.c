@@ -1,5 +1,6 @@
 #include "hosts/worker_pool.h"
 
+#include "reals.h"
 #include "scenario/text.h"
 
 #include <fcntl.h>
@@ -163,7 +164,7 @@ static void call(struct worker_pool *pool, double every_s)
     }
     size_t size;
     const motehound_worker_call_t message = {pool->session, (int32_t)(missing(pool, true) + missing(pool, false)),
-                                             (char *)pool->config.version};
+                                             (char *)pool->config.version, (char *)arithmetic_name(MH_REAL_FIXED)};
     uint8_t *bytes = worker_encode_call(&message, &size);
     if (bytes) {
         worker_link_publish(&pool->link, WORKER_CALL, bytes, size);
@@ -208,6 +209,14 @@ static void on_join(struct worker_pool *pool, const motehound_worker_join_t *mes
         char reason[400];
         snprintf(reason, sizeof reason, "worker %.90s is motehound %.50s, expected %.50s like this run", message->name,
                  message->version, pool->config.version);
+        give_up(pool, reason);
+        return;
+    }
+    if (strcmp(message->arithmetic, arithmetic_name(MH_REAL_FIXED)) != 0 && !pool->config.mixed) {
+        char reason[400];
+        snprintf(reason, sizeof reason,
+                 "worker %.90s computes in %.50s, expected %s like this run; --mixed lets it join", message->name,
+                 message->arithmetic, arithmetic_name(MH_REAL_FIXED));
         give_up(pool, reason);
         return;
     }

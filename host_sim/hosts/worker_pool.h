@@ -14,6 +14,7 @@ struct worker_pool_config {
     const char *images;  /* that these find the images of boards in */
     unsigned local;      /* workers to start */
     unsigned joining;    /* workers to wait for that others start */
+    bool mixed;          /* workers may compute in fixed point and in floating point, whatever the run does */
     bool respawn;        /* replace a worker that dies, else the run ends */
     double drop_share;   /* of the messages, in both directions, is dropped on purpose */
     const volatile sig_atomic_t *stop;
@@ -38,7 +39,7 @@ struct worker_answers {
 };
 
 /* Start the local workers and wait until all have joined; `waiting` (may be NULL) is called when only others' are missing. Returns NULL
- * with one line in `error`: no bus, a worker that does not come up or is of another version, stopped. */
+ * with one line in `error`: no bus, a worker that does not come up, or is of another version or arithmetic, stopped. */
 struct worker_pool *worker_pool_open(const struct worker_pool_config *config, void (*waiting)(unsigned missing),
                                      char *error, size_t error_size);
 

@@ -88,8 +88,8 @@ const char *worker_channel(int64_t worker, enum worker_request request, char cha
         return sound;                                                                                                  \
     }
 
-WORKER_CODEC(call, "84s")
-WORKER_CODEC(join, "88ss")
+WORKER_CODEC(call, "84ss")
+WORKER_CODEC(join, "88sss")
 WORKER_CODEC(assign, "888s8444444444")
 WORKER_CODEC(motes, "888[4444418888s]")
 WORKER_CODEC(window, "8888[8141[4]{1}]")

@@ -56,12 +56,12 @@ same luo 1280=host "${luo[@]}" # the head
 grep -q '"boards"' on_luo/summary.json || complain "no boards in summary.json"
 ! grep -q '"boards"' native_luo/summary.json || complain "boards in a run without any"
 # few neighbours, as images have room for; a walk of a minute
-sparse=(zhou_real --set source.duration_s=60 --set network.density=5 --set radio.range_m=60 --set protocol.members=7 --seed 3)
+sparse=(zhou_real --set source.duration_s=60 --set network.density=5 --set radio.range_m=60 --set protocol.members=6 --seed 12)
 han=(han_real --set source.duration_s=40 --set target.count=1 --set radio.range_m=45 --set protocol.replies=4 --set tracker.groups=none --set tracker.separation=none
     --seed 3)
 tracker=range
 [ -z "$ARITHMETIC" ] || tracker=pftl
-same zhou 821=host,452=host "${sparse[@]}" --set tracker.name=$tracker
+same zhou 680=host,543=host "${sparse[@]}" --set tracker.name=$tracker
 if [ -z "$ARITHMETIC" ]; then
     same han 590=host,562=host "${han[@]}"
 fi
@@ -80,7 +80,7 @@ command -v qemu-system-arm >/dev/null || missing+=("no qemu-system-arm")
 [ -n "$SIMAVR" ] || missing+=("no libsimavr")
 if [ ${#missing[@]} -eq 0 ]; then
     same luo 17=atmega128,42=atmega128,18=cortex-m0,43=cortex-m0 "${luo[@]}"
-    same zhou 821=cortex-m0,452=cortex-m0 "${sparse[@]}" --set tracker.name=$tracker
+    same zhou 84=atmega128,543=atmega128,680=cortex-m0,752=cortex-m0 "${sparse[@]}" --set tracker.name=$tracker # all of them lead
     if [ -z "$ARITHMETIC" ]; then
         same han 590=atmega128,594=atmega128,519=cortex-m0,562=cortex-m0 "${han[@]}" # all of them lead
         refused 'more than its image has room for: tracker.separation joint' "$MOTEHOUND" run "${han[@]}" --set tracker.separation=joint --out no --emulate 590=atmega128
@@ -108,6 +108,11 @@ pretend 'echo broken >&2; exit 3'
 refused 'node 17 on board host has ended with status 3: broken, at 0.000 s; image fake' "${run[@]}" --emulate 17=host --images fake
 pretend "exec '$APPS/cluster_head_pftl'"
 refused "has an image of the protocol cluster, expected collection" "${run[@]}" --emulate 17=host --images fake
+if [ -z "$ARITHMETIC" ]; then
+    mkdir other
+    ln -s "$APPS" other/host-fixed
+    refused "has an image in floating point, expected fixed point" "${run[@]}" --emulate 17=host-fixed --images other
+fi
 pretend "exec timeout -s KILL 0.5 '$APPS/sensor_node'"
 refused 'node 17 on board host .*(was ended by signal 9|has ended with status 137|has closed its line)' "$MOTEHOUND" run "${luo[@]}" --set source.speed_mps=0.02 --set radio.delay_s=0.0002 --out no --emulate 17=host --images fake
 nothing no

@@ -19,7 +19,7 @@ follows() {
     rm -rf float mixed
     accepted "$MOTEHOUND_FLOAT" run "$@" --out float
     "$MOTEHOUND" worker --bus "$bus" >worker.txt 2>&1 &
-    accepted "$MOTEHOUND_FLOAT" run "$@" --out mixed --bus "$bus" --workers 1 --join 1
+    accepted "$MOTEHOUND_FLOAT" run "$@" --out mixed --bus "$bus" --workers 1 --join 1 --mixed
     wait $! || complain "the fixed-point worker: $(cat worker.txt)"
     for name in position_rmse_m tracked_share saturations; do
         echo "$1 $name: $(value $name float) in float, $(value $name mixed) mixed"
@@ -30,6 +30,18 @@ follows() {
     [ "$(value saturations mixed)" = 0 ] || complain "$1: saturations $(value saturations mixed)"
 }
 
+# differs RUN WORKER EXPECTED: not told --mixed, a run of the one program refuses a worker of the other
+differs() {
+    "$2" worker --bus "$bus" 2>/dev/null &
+    local worker=$!
+    refused "^worker .*, process [0-9]+ computes in .*, expected $3 like this run; --mixed lets it join" "$1" run luo_exp1 --set tracker.name=luo --out no --bus "$bus" --workers 1 --join 1
+    nothing no
+    kill -INT $worker
+    wait $worker
+}
+
+differs "$MOTEHOUND_FLOAT" "$MOTEHOUND" 'floating point'
+differs "$MOTEHOUND" "$MOTEHOUND_FLOAT" 'fixed point'
 follows luo_exp1 --set tracker.name=luo
 follows zhou_real --set tracker.name=pftl --set source.duration_s=300 --seed 3
 awk -v clusters="$(value clusters mixed)" 'BEGIN {exit !(clusters >= 10)}' || complain "clusters: $(value clusters mixed)"

@@ -31,8 +31,8 @@ int main(int argc, char **argv)
     }
     motehound_worker_action_t action = {.kind = HOST_TRANSMIT, .length = 4, .frame = (uint8_t *)text};
     const motehound_worker_done_t done = {.session = 1, .worker = 2, .number = 3, .count = 1, .actions = &action};
-    const motehound_worker_join_t join = {1, 2, text, text};
-    const motehound_worker_call_t call = {1, 5, text};
+    const motehound_worker_join_t join = {1, 2, text, text, text};
+    const motehound_worker_call_t call = {1, 5, text, text};
     const motehound_worker_error_t failure = {1, 2, text};
     size_t done_size, join_size, call_size, error_size;
     uint8_t *done_bytes = worker_encode_done(&done, &done_size), *join_bytes = worker_encode_join(&join, &join_size);

@@ -568,6 +568,10 @@ static enum mh_status publish(void *state, mh_tick now, const struct mh_measurem
     serve(p);
     if (ticking) {
         find(p);
+    }
+    /* who wants a sample of now has it: to ask for it would hand it over once more, during this call */
+    p->sampled = measurement->time;
+    if (ticking) {
         mh_prince_watch(p);
     }
     arm(p);

@@ -14,7 +14,8 @@ static struct {
     unsigned sent, of_kind[MH_MESSAGE_KINDS];
     struct mh_message last[MH_MESSAGE_KINDS]; /* of each kind from MH_MESSAGE_AWAKE on */
     mh_tick time, timer;
-    bool sensing, listens, knows_time;
+    bool sensing, publishing, listens, knows_time;
+    mh_tick delay; /* from wanting a reading to having it */
     unsigned sensed, told, localised, began, others;
     size_t measurements;
     mh_tick localised_at;
@@ -67,6 +68,7 @@ static void sense(void *context, mh_tick now, mh_tick time)
 {
     (void)context;
     TEST_ASSERT_EQUAL_UINT32(now - AHEAD, time);
+    TEST_ASSERT_FALSE_MESSAGE(saw.publishing && time == saw.time, "a mote hands over what it has during the call");
     saw.sensing = true;
     saw.sensed++;
 }
@@ -150,16 +152,19 @@ static struct mh_prince_config config;
 static struct mh_protocol_node node;
 static struct mh_prince state;
 
-/* Readings come at once, but after the event that wanted them. */
+/* Readings come at once or after `delay`, but after the event that wanted them. */
 static void settle(void)
 {
     while (saw.sensing) {
+        saw.time += saw.delay;
         const struct mh_measurement measurement = {.node = NODE,
                                                    .place = node.place,
                                                    .time = saw.time,
                                                    .value = mh_q20_from_real(mh_real_from_float(saw.energy))};
         saw.sensing = false;
+        saw.publishing = true;
         TEST_ASSERT_EQUAL(MH_OK, prince->publish(&state, saw.time + AHEAD, &measurement));
+        saw.publishing = false;
     }
 }
 
@@ -171,7 +176,9 @@ static void run_until(mh_tick time)
         prince->timer(&state, saw.time + AHEAD);
         settle();
     }
-    saw.time = time;
+    if (mh_tick_before(saw.time, time)) {
+        saw.time = time;
+    }
 }
 
 static void hear(const struct mh_message *message)
@@ -433,6 +440,31 @@ static void the_prince_asks_as_soon_as_it_hears_the_target(void)
     TEST_ASSERT_EQUAL_INT32(TARGET, query->target);
     TEST_ASSERT_EQUAL_INT16(6, query->generation);
     TEST_ASSERT_EQUAL(MH_LOCATE_PRINCE, query->kind);
+}
+
+/* The reading comes later than it was wanted. It is one of now, which is not asked for again: see sense(). */
+static void a_late_reading_is_enough_to_ask_and_to_answer(void)
+{
+    const mh_tick began = saw.time;
+    tell_the(awake(5, HEAD, NODE));
+    saw.energy = 2;
+    saw.delay = 3;
+    run_until(began + 500);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_LOCATE]);
+    TEST_ASSERT_EQUAL(0, saw.last[MH_MESSAGE_LOCATE].as.locate.time_ms % 250 - 3);
+
+    come_up();
+    tell_the(awake(5, HEAD, NEXT));
+    saw.energy = 2;
+    saw.delay = 3;
+    while (saw.time % 250 != 3) {
+        run_until(saw.timer);
+    }
+    const unsigned sensed = saw.sensed;
+    tell_the(locate(6, OTHER, MH_LOCATE_PRINCE));
+    TEST_ASSERT_EQUAL(sensed, saw.sensed);
+    run_until(saw.time + config.window);
+    TEST_ASSERT_EQUAL(1, saw.of_kind[MH_MESSAGE_SOUND]);
 }
 
 static void a_fix_makes_a_head_that_tells_the_old_one_and_all(void)
@@ -1391,6 +1423,7 @@ int main(void)
     RUN_TEST(without_a_prince_or_a_velocity_all_compete);
     RUN_TEST(a_watcher_stays_until_the_target_has_passed);
     RUN_TEST(the_prince_asks_as_soon_as_it_hears_the_target);
+    RUN_TEST(a_late_reading_is_enough_to_ask_and_to_answer);
     RUN_TEST(a_fix_makes_a_head_that_tells_the_old_one_and_all);
     RUN_TEST(the_locator_samples_again_when_its_query_is_out);
     RUN_TEST(what_it_then_hears_no_more_counts_as_1);

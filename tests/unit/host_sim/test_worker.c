@@ -3,6 +3,7 @@
 #include "engine/random.h"
 #include "hosts/worker.h"
 #include "port.h"
+#include "reals.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -30,7 +31,8 @@ static void on_join(const lcm_recv_buf_t *buffer, const char *channel, void *con
     (void)channel;
     (void)context;
     TEST_ASSERT_TRUE(worker_decode_join(&link, buffer, &message));
-    TEST_ASSERT_TRUE(message.worker == WORKER && strcmp(message.version, "1") == 0);
+    TEST_ASSERT_TRUE(message.worker == WORKER && strcmp(message.version, "1") == 0 &&
+                     strcmp(message.arithmetic, arithmetic_name(MH_REAL_FIXED)) == 0);
     heard.session = message.session;
     heard.joins++;
     motehound_worker_join_t_decode_cleanup(&message);
@@ -115,7 +117,7 @@ static void call(int64_t from)
 {
     static char version[] = "1";
     size_t size;
-    const motehound_worker_call_t message = {from, 1, version};
+    const motehound_worker_call_t message = {from, 1, version, version};
     uint8_t *bytes = worker_encode_call(&message, &size);
     send(WORKER_CALL, bytes, size);
     free(bytes);
