@@ -140,6 +140,15 @@ static enum mh_status identify(void)
     return MH_OK;
 }
 
+static enum mh_status take_entry(struct mh_line_fields *fields,
+                                 enum mh_status (*take)(struct mh_line_fields *, uint16_t))
+{
+    uint16_t number = UINT16_MAX;
+    mh_line_u16(fields, &number);
+    const enum mh_status status = take(fields, number);
+    return status == MH_OK && !mh_line_complete(fields) ? MH_ERR_CORRUPT : status;
+}
+
 static enum mh_status configure(struct mh_line_fields *fields)
 {
     struct board_mote *board = self.board;
@@ -160,6 +169,12 @@ static enum mh_status configure(struct mh_line_fields *fields)
     } else if (part == MH_LINE_CLOCK_KEEPING && board->clock) {
         mh_settings_clock(fields, board->clock_config);
         board->mote.clock = board->clock;
+    } else if (part == MH_LINE_CENTRE && board->centre_settings) {
+        board->centre_settings(fields, board->centre);
+    } else if (part == MH_LINE_PROTOCOL_ENTRY && board->protocol_entry) {
+        return take_entry(fields, board->protocol_entry);
+    } else if (part == MH_LINE_TRACKER_ENTRY && board->tracker_entry) {
+        return take_entry(fields, board->tracker_entry);
     } else {
         return MH_ERR_ARGUMENT;
     }

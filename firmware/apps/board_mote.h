@@ -26,6 +26,11 @@ struct board_mote {
     struct mh_clock_config *clock_config;
     void *protocol, *tracker;                          /* configurations ... */
     mh_settings *protocol_settings, *tracker_settings; /* ... and their fields */
+    /* Entry `number` of the list that they point to. MH_ERR_CAPACITY: there is no room */
+    enum mh_status (*protocol_entry)(struct mh_line_fields *fields, uint16_t number);
+    enum mh_status (*tracker_entry)(struct mh_line_fields *fields, uint16_t number);
+    void *centre; /* configuration of mote.centre ... */
+    mh_settings *centre_settings;
     bool samples; /* the sensor each interval, running free; else when the protocol asks for it */
     bool (*self_test)(void);
     void (*report)(void *context,

@@ -3,6 +3,9 @@
 
 #include TRACKER_HEADER
 
+#ifndef TRACKER_ENTRY
+#define TRACKER_ENTRY NULL /* its configuration points to no list */
+#endif
 #define WINDOW (PROTOCOL_SAMPLES ? STEP_MS / 2 : 150)
 #define TOLERANCE (PROTOCOL_SAMPLES ? 0 : STEP_MS / 4)
 
@@ -19,6 +22,7 @@ static struct board_mote board = {.mote = {MOTE_PARTS, .head = &head, .head_stat
                                   .head = &head,
                                   .tracker = &tracker_config,
                                   .tracker_settings = TRACKER_SETTINGS,
+                                  .tracker_entry = TRACKER_ENTRY,
                                   .self_test = SELF_TEST,
                                   .report = board_report};
 

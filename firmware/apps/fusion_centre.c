@@ -1,24 +1,9 @@
-/* Image of the mote that joins the tracks of four clusters by covariance intersection, at the sink of the protocol `fixed`. The clusters are those of CLUSTERS: known by configuration to all motes, here when the image
- * is built. */
+/* Image of the mote that joins the tracks of fixed clusters by covariance intersection, at their sink. */
 #include "motehound/fusion_centre.h"
 #include "board_mote.h"
+#include "protocols/fixed.h"
 #include "self_test.h"
 
-/* Each cluster: four sensors about the corner of a field of 40 m by 40 m, whose middle is the sink's. */
-#define MEMBER(id, x_m, y_m)                                                                                           \
-    {                                                                                                                  \
-        (id), { (x_m) * 1000L, (y_m)*1000L, 0 }                                                                        \
-    }
-#define CLUSTER(first, x, y)                                                                                           \
-    MEMBER(first, x, y), MEMBER((first) + 1, (x) + 8, y), MEMBER((first) + 2, x, (y) + 8),                             \
-        MEMBER((first) + 3, (x) + 8, (y) + 8)
-static const struct mh_fixed_member members[16] = {CLUSTER(10, -20, -20), CLUSTER(20, 12, -20), CLUSTER(30, -20, 12),
-                                                   CLUSTER(40, 12, 12)};
-static const struct mh_fixed_cluster clusters[4] = {
-    {&members[0], 4}, {&members[4], 4}, {&members[8], 4}, {&members[12], 4}};
-
-static struct mh_fixed_config routing;
-static struct mh_fixed route;
 static struct mh_fusion_centre_config joining;
 static struct mh_fusion_centre centre;
 static struct mh_clock_config clock_config = {.root = true, .period = 30000, .wait = 4000, .sent_q8 = 128};
@@ -27,8 +12,8 @@ static struct mh_clock clock_state;
 static struct board_mote board = {
     .mote = {.id = MOTE_ID,
              .protocol = &mh_protocol_fixed,
-             .protocol_config = &routing,
-             .protocol_state = &route,
+             .protocol_config = &protocol_config,
+             .protocol_state = &protocol_state,
              .clock = &mh_clock_flooding,
              .clock_config = &clock_config,
              .clock_state = &clock_state,
@@ -37,18 +22,19 @@ static struct board_mote board = {
              .centre_state = &centre},
     .clock = &mh_clock_flooding,
     .clock_config = &clock_config,
-    .protocol = &routing,
+    .protocol = &protocol_config,
+    .protocol_settings = PROTOCOL_SETTINGS,
+    .protocol_entry = PROTOCOL_ENTRY,
+    .centre = &joining,
+    .centre_settings = mh_settings_fusion_centre,
     .self_test = self_test_fusion,
     .report = board_report,
 };
 
 int main(void)
 {
-    mh_fixed_config_default(&routing);
-    routing.port = &mh_mote_fixed;
-    routing.sink = MOTE_ID;
-    routing.clusters = clusters;
-    routing.cluster_count = 4;
+    protocol_default();
+    protocol_config.sink = MOTE_ID;
     mh_fusion_centre_config_default(&joining);
     return board_mote_run(&board);
 }

@@ -8,6 +8,9 @@
 
 #include PROTOCOL_HEADER
 
+#ifndef PROTOCOL_ENTRY
+#define PROTOCOL_ENTRY NULL /* its configuration points to no list */
+#endif
 #ifndef STEP_MS
 #define STEP_MS 1000 /* between sampling instants */
 #endif
@@ -31,6 +34,6 @@ static struct mh_clock clock_state;
     .protocol_state = &protocol_state, .clock_state = CLOCK_STATE, CLOCK_PARTS
 #define BOARD_PARTS                                                                                                    \
     .sensor = &sensor, .protocol = &protocol_config, .protocol_settings = PROTOCOL_SETTINGS,                           \
-    .samples = PROTOCOL_SAMPLES, CLOCK_PARTS
+    .protocol_entry = PROTOCOL_ENTRY, .samples = PROTOCOL_SAMPLES, CLOCK_PARTS
 
 #endif

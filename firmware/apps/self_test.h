@@ -13,6 +13,7 @@ bool self_test_node(void);
 /* Heads, each with self_test_node besides. */
 bool self_test_luo(void);   /* a puff's concentration, least squares, a step of the Sage-Husa filter */
 bool self_test_range(void); /* the model of ranges, prediction and update of a Kalman filter */
+bool self_test_sigma(void); /* the model of ranges, an update by sigma points */
 bool self_test_particles(struct mh_particles *set); /* the weights and mean of three particles. Leaves them in `set` */
 bool self_test_distances(void);                     /* the distance table, the point of two circles */
 bool self_test_sound(void);                         /* a fix from five energies */

@@ -3,11 +3,16 @@
 #include "frame_kinds.h"
 #include "motehound/acoustic.h"
 #include "motehound/cluster.h"
+#include "motehound/fixed.h"
 #include "motehound/pftl.h"
 #include "motehound/prince.h"
 #include "motehound/settings.h"
 #include "reals.h"
 #include "scenario/text.h"
+
+#if !MH_REAL_FIXED
+#include "motehound/cv.h"
+#endif
 
 #include <math.h>
 #include <stdio.h>
@@ -385,6 +390,7 @@ static const struct named_settings protocols[] = {{"direct", mh_settings_direct}
                                                   {"cluster", mh_settings_cluster},
                                                   {"prince", mh_settings_prince},
 #if !MH_REAL_FIXED
+                                                  {"fixed", mh_settings_fixed},
                                                   {"token", mh_settings_token},
 #endif
                                                   {NULL, NULL}};
@@ -402,6 +408,8 @@ static const struct named_settings trackers[] = {{"luo", mh_settings_luo},
                                                  {"gas_small", mh_settings_gas},
                                                  {"gas_ekf", mh_settings_gas},
                                                  {"gas_ukf", mh_settings_gas},
+                                                 {"cv_ukf", mh_settings_cv},
+                                                 {"cv_ekf", mh_settings_cv},
 #endif
                                                  {NULL, NULL}};
 
@@ -419,6 +427,10 @@ static int configured(struct boards *boards, struct board *board, struct message
     }
     if (outcome.answer.status != MH_OK) {
         char what[100];
+        if (outcome.answer.status == MH_ERR_CAPACITY) {
+            snprintf(what, sizeof what, "does not take its configuration: more than its image has room for: %s", part);
+            return trouble(boards, board, what);
+        }
         snprintf(what, sizeof what, "does not take its configuration (%s: status %d)", part,
                  (int)outcome.answer.status);
         return trouble(boards, board, what);
@@ -436,6 +448,91 @@ static int configured(struct boards *boards, struct board *board, struct message
             return -1;                                                                                                 \
         }                                                                                                              \
     } while (0)
+
+/* An entry of a list begins. */
+static void begin_entry(struct message *message, enum mh_line_part part, uint32_t number)
+{
+    begin(message, MH_LINE_CONFIGURE);
+    put_number(message, part);
+    put_number(message, number);
+}
+
+/* The entries that concern a mote: a target that begins where it is not heard means nothing to it. */
+static int tell_entries(struct boards *boards, struct board *board)
+{
+    const struct mh_prince_config *prince = board->what.protocol_config;
+    const uint32_t range_mm = (uint32_t)mh_real_times(prince->radio_range_m, 1000);
+    uint32_t told = 0;
+    for (uint8_t i = 0; i < prince->entry_count; i++) {
+        struct mh_prince_entry entry = prince->entries[i];
+        struct message message;
+        if (mh_place_within(&board->what.place, &entry.place, range_mm)) {
+            begin_entry(&message, MH_LINE_PROTOCOL_ENTRY, told++);
+            mh_settings_prince_entry(&message.fields, &entry);
+            if (configured(boards, board, &message, "protocol.entries") != 0) {
+                return -1;
+            }
+        }
+    }
+    return 0;
+}
+
+#if !MH_REAL_FIXED
+static int tell_clusters(struct boards *boards, struct board *board)
+{
+    const struct mh_fixed_config *fixed = board->what.protocol_config;
+    uint32_t told = 0;
+    for (uint8_t i = 0; i < fixed->cluster_count; i++) {
+        for (uint8_t k = 0; k < fixed->clusters[i].count; k++) {
+            struct mh_fixed_member member = fixed->clusters[i].members[k];
+            struct message message;
+            begin_entry(&message, MH_LINE_PROTOCOL_ENTRY, told++);
+            mh_settings_fixed_member(&message.fields, &i, &member);
+            if (configured(boards, board, &message, "clusters") != 0) {
+                return -1;
+            }
+        }
+    }
+    return 0;
+}
+
+static int tell_noise(struct boards *boards, struct board *board)
+{
+    const struct mh_cv_config *cv = board->what.head->tracker_config;
+    for (uint32_t i = 0; i < cv->noise_count; i++) {
+        struct mh_cv_noise noise = cv->noise[i];
+        struct message message;
+        begin_entry(&message, MH_LINE_TRACKER_ENTRY, i);
+        mh_settings_cv_noise(&message.fields, &noise);
+        if (configured(boards, board, &message, "noise of clusters") != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+#endif
+
+/* What protocol, tracker and centre of fixed clusters, and `prince`, know besides. */
+static int configure_lists(struct boards *boards, struct board *board)
+{
+    const struct host_mote *what = &board->what;
+    if (what->protocol == &mh_protocol_prince) {
+        return tell_entries(boards, board);
+    }
+#if !MH_REAL_FIXED
+    struct message message;
+    if (what->protocol == &mh_protocol_fixed && tell_clusters(boards, board) != 0) {
+        return -1;
+    }
+    if (what->centre) {
+        CONFIGURE(MH_LINE_CENTRE, "fusion centre", mh_settings_fusion_centre, (void *)what->centre_config);
+    }
+    if (what->head && find(trackers, what->head->tracker->name) == mh_settings_cv) {
+        return tell_noise(boards, board);
+    }
+#endif
+    return 0;
+}
 
 static int configure(struct boards *boards, struct board *board)
 {
@@ -457,7 +554,7 @@ static int configure(struct boards *boards, struct board *board)
     if (what->sync) {
         CONFIGURE(MH_LINE_CLOCK_KEEPING, "clock", mh_settings_clock, (struct mh_clock_config *)what->sync);
     }
-    return 0;
+    return configure_lists(boards, board);
 }
 
 /* ---- the board's beginning ---- */
@@ -466,9 +563,6 @@ static int check_mote(struct boards *boards, const struct board *board)
 {
     const struct host_mote *what = &board->what;
     char text[200];
-    if (what->centre) {
-        return trouble(boards, board, "cannot be a fusion centre: no image holds one");
-    }
     if (!find(protocols, what->protocol->name)) {
         snprintf(text, sizeof text, "cannot be told the configuration of the protocol %s", what->protocol->name);
         return trouble(boards, board, text);
@@ -476,16 +570,6 @@ static int check_mote(struct boards *boards, const struct board *board)
     if (what->head && !find(trackers, what->head->tracker->name)) {
         snprintf(text, sizeof text, "cannot be told the configuration of the tracker %s", what->head->tracker->name);
         return trouble(boards, board, text);
-    }
-    const struct mh_prince_config *prince = what->protocol == &mh_protocol_prince ? what->protocol_config : NULL;
-    for (uint8_t i = 0; prince && i < prince->entry_count; i++) {
-        if (mh_place_within(&what->place, &prince->entries[i].place,
-                            (uint32_t)(1000 * number_of(prince->radio_range_m)))) {
-            return trouble(
-                boards, board,
-                "cannot be told that a target begins near it: choose a node farther off, or protocol.entries "
-                "false");
-        }
     }
     return 0;
 }
@@ -502,6 +586,9 @@ static int choose_image(struct boards *boards, struct board *board)
         snprintf(names[0], sizeof names[0], "cluster_head_%.40s", what->head->tracker->name);
         snprintf(names[1], sizeof names[1], "cluster_head_%.40s_%.40s", what->head->tracker->name,
                  what->protocol->name);
+    } else if (what->centre) {
+        snprintf(names[0], sizeof names[0], "cluster_head_ci");
+        snprintf(names[1], sizeof names[1], "cluster_head_ci_%.40s", what->protocol->name);
     } else {
         const bool is_usual = strcmp(what->protocol->name, "collection") == 0;
         snprintf(names[1], sizeof names[1], "sensor_node_%.40s", what->protocol->name);

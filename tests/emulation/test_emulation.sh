@@ -59,11 +59,14 @@ grep -q '"boards"' on_luo/summary.json || complain "no boards in summary.json"
 sparse=(zhou_real --set source.duration_s=60 --set network.density=5 --set radio.range_m=60 --set protocol.members=6 --seed 12)
 han=(han_real --set source.duration_s=40 --set target.count=1 --set radio.range_m=45 --set protocol.replies=4 --set tracker.groups=none --set tracker.separation=none
     --seed 3)
+xu=(xu_real --set source.duration_s=20 --set network.nodes=16 --set clusters.nodes=3,4,5,4) # node 16 is the fusion centre
 tracker=range
 [ -z "$ARITHMETIC" ] || tracker=pftl
 same zhou 680=host,543=host "${sparse[@]}" --set tracker.name=$tracker
 if [ -z "$ARITHMETIC" ]; then
-    same han 590=host,562=host "${han[@]}"
+    same han 590=host,548=host "${han[@]}" # the second is where the target begins
+    same xu 16=host,0=host,5=host "${xu[@]}"
+    same fed 16=host,0=host,5=host "${xu[@]}" --set fusion.rule=hif_feedback
 fi
 
 # a mote that dies and comes back, and several runs
@@ -82,7 +85,9 @@ if [ ${#missing[@]} -eq 0 ]; then
     same luo 17=atmega128,42=atmega128,18=cortex-m0,43=cortex-m0 "${luo[@]}"
     same zhou 84=atmega128,543=atmega128,680=cortex-m0,752=cortex-m0 "${sparse[@]}" --set tracker.name=$tracker # all of them lead
     if [ -z "$ARITHMETIC" ]; then
-        same han 590=atmega128,594=atmega128,519=cortex-m0,562=cortex-m0 "${han[@]}" # all of them lead
+        same han 590=atmega128,548=atmega128,519=cortex-m0,562=cortex-m0 "${han[@]}" # all of them lead
+        same xu 16=atmega128,0=cortex-m0,7=cortex-m0 "${xu[@]}"                       # the centre and two heads
+        refused 'more than its image has room for: clusters' "$MOTEHOUND" run "${xu[@]}" --set network.nodes=18 --set clusters.nodes=3,4,5,6 --out no --emulate 18=atmega128
         refused 'more than its image has room for: tracker.separation joint' "$MOTEHOUND" run "${han[@]}" --set tracker.separation=joint --out no --emulate 590=atmega128
     fi
 elif [ -n "$ALL_BOARDS" ]; then

@@ -7,6 +7,10 @@
 #include "motehound/luo.h"
 #include "motehound/pftl.h"
 #include "motehound/token.h"
+#if !MH_REAL_FIXED
+#include "motehound/cv.h"
+#include "motehound/fusion_centre.h"
+#endif
 
 enum { ROOM = 160 };
 
@@ -31,6 +35,11 @@ static void understand(const struct mh_line_receiver *receiver)
         struct mh_acoustic_config acoustic;
         struct mh_cluster_config cluster;
         struct mh_token_config token;
+#if !MH_REAL_FIXED
+        struct mh_fixed_config fixed;
+        struct mh_cv_config cv;
+        struct mh_fusion_centre_config centre;
+#endif
     } config;
     static mh_settings *const settings[] = {
         mh_settings_luo,
@@ -39,6 +48,9 @@ static void understand(const struct mh_line_receiver *receiver)
         mh_settings_cluster,
 #if !MH_REAL_FIXED
         mh_settings_token,
+        mh_settings_fixed,
+        mh_settings_cv,
+        mh_settings_fusion_centre,
 #endif
     };
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {

@@ -7,6 +7,26 @@
 static struct mh_prince_config protocol_config;
 static struct mh_prince protocol_state;
 
+/* Targets that begin near the node: each costs 16 bytes of RAM. */
+#ifdef __AVR__
+#define ENTRIES_MAX 1
+#else
+#define ENTRIES_MAX 8
+#endif
+static struct mh_prince_entry entries[ENTRIES_MAX];
+
+#define PROTOCOL_ENTRY take_entry
+static enum mh_status take_entry(struct mh_line_fields *fields, uint16_t number)
+{
+    if (number >= ENTRIES_MAX) {
+        return MH_ERR_CAPACITY;
+    }
+    mh_settings_prince_entry(fields, &entries[number]);
+    protocol_config.entries = entries;
+    protocol_config.entry_count = (uint8_t)(number + 1);
+    return MH_OK;
+}
+
 static void protocol_default(void)
 {
     mh_prince_config_default(&protocol_config, MH_PRINCE_NAMED, true, MH_REAL(40.0f), MH_REAL(140.0f));

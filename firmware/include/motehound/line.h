@@ -57,12 +57,16 @@ enum mh_line_kind {
 
 /* What of a mote is configured, before START: a mote has a sensor, a head and a clock if CONFIGURE names them; all else has the image's own values. */
 enum mh_line_part {
-    MH_LINE_MOTE,         /* mh_settings_mote */
-    MH_LINE_SENSOR,       /* mh_settings_sensor */
-    MH_LINE_PROTOCOL,     /* that of the image's protocol */
-    MH_LINE_HEAD,         /* mh_settings_head */
-    MH_LINE_TRACKER,      /* that of the image's tracker */
-    MH_LINE_CLOCK_KEEPING /* mh_settings_clock */
+    MH_LINE_MOTE,          /* mh_settings_mote */
+    MH_LINE_SENSOR,        /* mh_settings_sensor */
+    MH_LINE_PROTOCOL,      /* that of the image's protocol */
+    MH_LINE_HEAD,          /* mh_settings_head */
+    MH_LINE_TRACKER,       /* that of the image's tracker */
+    MH_LINE_CLOCK_KEEPING, /* mh_settings_clock */
+    MH_LINE_CENTRE,        /* that of the image's fusion centre */
+    /* an entry of the list that the protocol's or the tracker's configuration points to: its number, from 0 on one after the other, and its fields; number 0 begins the list anew */
+    MH_LINE_PROTOCOL_ENTRY,
+    MH_LINE_TRACKER_ENTRY
 };
 
 /* Longest messages, kind and check sequence included: a buffer for one. */

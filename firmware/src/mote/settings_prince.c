@@ -23,3 +23,9 @@ void mh_settings_prince(struct mh_line_fields *fields, void *config)
     mh_line_u32(fields, &prince->wake_length);
     mh_line_u32(fields, &prince->hello_period);
 }
+
+void mh_settings_prince_entry(struct mh_line_fields *fields, struct mh_prince_entry *entry)
+{
+    mh_line_place(fields, &entry->place);
+    mh_line_u32(fields, &entry->time);
+}
