@@ -15,6 +15,7 @@ struct board_kind {
     unsigned
         instruction_shift; /* an instruction takes 2^shift ns of QEMU's time, by which the board's own clock goes */
     double rate_hz;        /* what the processor is taken to do in a second: cycles; of QEMU, instructions */
+    unsigned elf_machine;  /* of its images */
 };
 
 /* The kind called `name`, also with "-fixed" behind it; NULL if there is none. */

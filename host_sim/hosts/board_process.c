@@ -34,8 +34,11 @@ static void become(const char *const *arguments, int line, int complaints)
     if (dup2(line, STDIN_FILENO) >= 0 && dup2(line, STDOUT_FILENO) >= 0 && dup2(complaints, STDERR_FILENO) >= 0) {
         execvp(arguments[0], (char *const *)arguments);
     }
-    static const char reason[] = "cannot be started: not installed?";
-    (void)!write(STDERR_FILENO, reason, sizeof reason - 1);
+    const char *reason = errno == ENOENT   ? ": cannot be started: not installed?"
+                         : errno == EACCES ? ": cannot be started: may not be run"
+                                           : ": cannot be started";
+    (void)!write(STDERR_FILENO, arguments[0], strlen(arguments[0]));
+    (void)!write(STDERR_FILENO, reason, strlen(reason));
     _exit(127);
 }
 

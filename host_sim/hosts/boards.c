@@ -617,6 +617,8 @@ static int check_identity(struct boards *boards, struct board *board)
     if (identity->version != MH_LINE_VERSION || strcmp(identity->library, MOTEHOUND_VERSION) != 0) {
         snprintf(text, sizeof text, "has an image of version %.40s (line %u), expected %s (line %u)", identity->library,
                  identity->version, MOTEHOUND_VERSION, MH_LINE_VERSION);
+    } else if (board->kind->machine && strcmp(identity->board, board->kind->name) != 0) {
+        snprintf(text, sizeof text, "has an image of the board %.40s", identity->board);
     } else if (!identity->self_test_passed) {
         snprintf(text, sizeof text, "fails its self-test");
     } else if (identity->fixed != fixed) {

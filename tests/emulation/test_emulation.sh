@@ -10,7 +10,8 @@ if [ -z "$IN_OWN_NETWORK" ]; then
     fi
     IN_OWN_NETWORK=no
 fi
-. "$(dirname "$0")/../network/common.sh"
+folder=$(cd "$(dirname "$0")" && pwd)
+. "$folder/../network/common.sh"
 for board in atmega128 cortex-m0; do
     if [ -z "$NO_BOARDS" ] && [ -e "$BUILDS/$board$ARITHMETIC/firmware/apps/cluster_head_luo" ]; then
         mkdir -p images
@@ -118,9 +119,37 @@ if [ -z "$ARITHMETIC" ]; then
     ln -s "$APPS" other/host-fixed
     refused "has an image in floating point, expected fixed point" "${run[@]}" --emulate 17=host-fixed --images other
 fi
+version=$("$MOTEHOUND" --version | grep -Eo '[0-9.]+')
+LC_ALL=C sed "s/${version//./[.]}\\x00/9.8.7\\x00/g" "$APPS/sensor_node" >"$fake/old" && chmod +x "$fake/old"
+pretend "exec '$fake/old'"
+refused 'has an image of version 9.8.7 .line 1., expected '"$version"' .line 1.' "${run[@]}" --emulate 17=host --images fake
+pretend "exec python3 '$folder/fault.py' '$APPS/sensor_node' 100"
+refused 'node 17 on board host has started anew: its stack ran over at 0x1234, at [1-9][0-9.]* s; image fake' "${run[@]}" --emulate 17=host --images fake
+rm "$fake/sensor_node"
+echo "not to be run" >"$fake/sensor_node"
+refused 'sensor_node: cannot be started: may not be run' "${run[@]}" --emulate 17=host --images fake
+mkdir -p "fake/cortex-m0$ARITHMETIC"
+: >"fake/cortex-m0$ARITHMETIC/sensor_node"
+refused 'node 17 on board cortex-m0: fake.* is no image of a board' "${run[@]}" --emulate 17=cortex-m0 --images fake
+if [ ${#missing[@]} -eq 0 ]; then
+    cp "images/atmega128$ARITHMETIC/sensor_node" "fake/cortex-m0$ARITHMETIC"
+    refused 'is for another processor .ELF machine 83, expected 40.' "${run[@]}" --emulate 17=cortex-m0 --images fake
+    head -c 30000 "images/cortex-m0$ARITHMETIC/sensor_node" >"fake/cortex-m0$ARITHMETIC/sensor_node"
+    refused 'sensor_node is not whole' "${run[@]}" --emulate 17=cortex-m0 --images fake
+    refused 'qemu-system-arm: cannot be started: not installed' env PATH=/nowhere "${run[@]}" --emulate 17=cortex-m0
+fi
 pretend "exec timeout -s KILL 0.5 '$APPS/sensor_node'"
 refused 'node 17 on board host .*(was ended by signal 9|has ended with status 137|has closed its line)' "$MOTEHOUND" run "${luo[@]}" --set source.speed_mps=0.02 --set radio.delay_s=0.0002 --out no --emulate 17=host --images fake
+"${run[@]}" --set source.speed_mps=0.02 --emulate 17=host,18=host >out.txt 2>err.txt & interrupted=$!
+sleep 0.3
+kill -INT $interrupted
+wait $interrupted && complain "interrupted: status 0"
+[ "$(cat err.txt)" = "motehound: interrupted, nothing was written to no" ] || complain "interrupted: $(cat err.txt)"
 nothing no
+sleep 0.1
+for process in /proc/[0-9]*; do
+    [ "$(readlink "$process/cwd")" != "$PWD" ] || [[ "$(readlink "$process/exe")" != */sensor_node ]] || complain "a board is left: $process"
+done
 
 # over the bus: whichever worker has the mote runs its board
 if [ "$IN_OWN_NETWORK" = yes ]; then
