@@ -24,7 +24,9 @@ enum mh_status mh_particles_init(struct mh_particles *particles, uint16_t count,
     return MH_OK;
 }
 
-#ifdef __AVR__ /* whose compiler calls a function, which takes twice as long */
+/* Products of 16 bits: of numbers that are not negative, the upper half of them, of a number that may be negative with one that is not, of two that may, and
+ * squares. An AVR's compiler calls a function for each, which takes twice as long. */
+#ifdef __AVR__
 __attribute__((always_inline)) static inline uint32_t wide(uint16_t a, uint16_t b)
 {
     uint32_t result;
@@ -38,14 +40,24 @@ __attribute__((always_inline)) static inline uint32_t wide(uint16_t a, uint16_t 
     /* clang-format on */
     return result;
 }
-#else
-static uint32_t wide(uint16_t a, uint16_t b) { return (uint32_t)a * b; }
-#endif
-
-/* of fractions of 16 bits */
 static uint16_t product(uint16_t a, uint16_t b) { return (uint16_t)(wide(a, b) >> 16); }
 
+/* The bits of a negative number are 2^16 more. */
+static int16_t product_of(int16_t a, uint16_t b) { return (int16_t)(product((uint16_t)a, b) - (a < 0 ? b : 0u)); }
+
+static int16_t turned(int16_t a, int16_t b)
+{
+    return (int16_t)((uint16_t)product_of(a, (uint16_t)b) - (b < 0 ? (uint16_t)a : 0u));
+}
+
 static uint32_t square_of(int16_t a) { return wide((uint16_t)(a < 0 ? -a : a), (uint16_t)(a < 0 ? -a : a)); }
+#else
+static uint32_t wide(uint16_t a, uint16_t b) { return (uint32_t)a * b; }
+static uint16_t product(uint16_t a, uint16_t b) { return (uint16_t)(wide(a, b) >> 16); }
+static int16_t product_of(int16_t a, uint16_t b) { return (int16_t)((int32_t)a * b >> 16); }
+static int16_t turned(int16_t a, int16_t b) { return (int16_t)((int32_t)a * b >> 16); }
+static uint32_t square_of(int16_t a) { return (uint32_t)((int32_t)a * a); }
+#endif
 
 /* a * part / 2^16 */
 static uint32_t part_of(uint32_t a, uint16_t part)
@@ -58,13 +70,9 @@ static int16_t limited(int16_t a) { return a > LIMIT ? LIMIT : a < -LIMIT ? -LIM
 /* A length, at most the limit. */
 static int16_t to_units(const struct mh_particles *particles, mh_real length)
 {
-    const int32_t bits = mh_real_to_bits(length);
-    const int16_t metres = (int16_t)(bits >> MH_REAL_BITS), most = LIMIT >> particles->bits;
-    if (metres > most || metres < -most - 1) {
-        return metres < 0 ? -LIMIT : LIMIT;
-    }
-    const int32_t scaled = (int32_t)((uint32_t)bits << particles->bits);
-    return limited((int16_t)((scaled + ((int32_t)1 << (MH_REAL_BITS - 1))) >> MH_REAL_BITS));
+    const mh_real limit = mh_real_from_bits((int32_t)LIMIT << (MH_REAL_BITS - particles->bits));
+    const int32_t half = MH_REAL_ONE / 2 >> particles->bits;
+    return (int16_t)((mh_real_to_bits(mh_clamp(length, -limit, limit)) + half) >> (MH_REAL_BITS - particles->bits));
 }
 
 /* Square root, rounded: of the number as m 2^e, m from 1/2 to 1, by a polynomial of 1 - m. */
@@ -115,20 +123,8 @@ static void direction(uint16_t half, int16_t *along, int16_t *across)
     *across = (int16_t)product(sine, cosine);
 }
 
-/* of a component of a direction with another, 14 fractional bits */
-static int16_t turned(int16_t a, int16_t b)
-{
-    const uint16_t of_bits =
-        product((uint16_t)a, (uint16_t)b); /* those of a and b are 2^16 more where these are negative */
-    return (int16_t)(of_bits - (a < 0 ? (uint16_t)b : 0u) - (b < 0 ? (uint16_t)a : 0u));
-}
-
 /* a direction with 14 fractional bits, to a length */
-static int16_t stretched(int16_t direction, uint16_t length)
-{
-    const uint16_t quadruple = (uint16_t)(4 * length);
-    return (int16_t)(product((uint16_t)direction, quadruple) - (direction < 0 ? quadruple : 0u));
-}
+static int16_t stretched(int16_t direction, uint16_t length) { return product_of(direction, (uint16_t)(4 * length)); }
 
 /* a component of a unit vector, 15 fractional bits */
 static int16_t to_axis(mh_real a)
@@ -160,6 +156,7 @@ void mh_particles_draw(struct mh_particles *particles, uint16_t from, const stru
         int16_t along, across;
         direction(product(half_angle, (uint16_t)(low << 1)), &along, &across);
         across = (int16_t)(low & 0x8000u ? -across : across);
+        /* 14 fractional bits */
         const int16_t x = (int16_t)(turned(axis_x, along) - turned(axis_y, across));
         const int16_t y = (int16_t)(turned(axis_y, along) + turned(axis_x, across));
         particles->x[i] = limited((int16_t)(apex_x + stretched(x, radius)));
