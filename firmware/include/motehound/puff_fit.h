@@ -89,7 +89,7 @@ struct mh_puff_nonlinear {
     struct mh_puff trial, best;
     struct mh_least_squares trial_equations, best_equations; /* linearised there */
     mh_real trial_residual;
-    mh_real cost;                                            /* of best: sum of the squared residuals, (g/m2)^2 */
+    mh_real cost; /* of best: sum of the squared residuals, (g/m2)^2 */
     mh_real damping;
     uint8_t passes; /* over the samples so far */
 };
