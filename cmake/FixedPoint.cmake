@@ -123,12 +123,17 @@ set(MOTEHOUND_FIXED_POINT_BENCHES
   acoustic_dm_three
   centroid
   centroid_few
+  fuse_ci
+  fuse_naive
   kalman
   kalman_dense
   known
   luo
   pftl
   pftl_few
+  puff_linear
+  sage_husa
   sound_cases
+  sound_share
   sound_three
 )

@@ -1,5 +1,5 @@
 /* A step of the acoustic tracker with six nodes (BENCH_ACOUSTIC_ONE), and of one of two targets 30 m apart, with what nine nodes hear of both (BENCH_ACOUSTIC_TWO); of `dm` with the three
- * of six that are strongest (BENCH_ACOUSTIC_DM), and where no more than three are heard (BENCH_ACOUSTIC_DM_THREE). The nodes stand on a grid of 30 m. */
+ * of six that are strongest (BENCH_ACOUSTIC_DM), and where no more than three are heard (BENCH_ACOUSTIC_DM_THREE); of `ml` with all six (BENCH_ACOUSTIC_ML). The nodes stand on a grid of 30 m. */
 #include "bench.h"
 #include "motehound/acoustic.h"
 #include "motehound/random.h"
@@ -18,6 +18,8 @@ enum { NODES = 6, TARGETS = 1 };
 #if defined BENCH_ACOUSTIC_DM || defined BENCH_ACOUSTIC_DM_THREE
 #define MEASURES_DISTANCES 1
 #define TRACKER mh_tracker_dm
+#elif defined BENCH_ACOUSTIC_ML
+#define TRACKER mh_tracker_ml
 #else
 #define TRACKER mh_tracker_acoustic
 #endif
@@ -41,7 +43,7 @@ static void begin(unsigned step, int target)
 {
     struct mh_acoustic_config config;
     mh_acoustic_config_default(&config, MH_REAL(40.0f));
-#ifdef MEASURES_DISTANCES
+#if defined MEASURES_DISTANCES || defined BENCH_ACOUSTIC_ML
     config.separation = MH_SEPARATION_NONE;
 #endif
     const struct mh_place place = place_of(step, target);

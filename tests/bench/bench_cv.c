@@ -1,9 +1,15 @@
-/* One step of the tracker `cv_ukf` with four ranges of one instant; with BENCH_CV_LATE two of them come a step late, so that every instant is filtered twice. Ranges older than
+/* One step of the tracker `cv_ukf` with four ranges of one instant; of `cv_ekf` with BENCH_CV_EKF; with BENCH_CV_LATE two of them come a step late, so that every instant is filtered twice. Ranges older than
  * 2 s are settled. */
 #include "bench.h"
 #include "motehound/cv.h"
 
 #include <string.h>
+
+#ifdef BENCH_CV_EKF
+#define TRACKER mh_tracker_cv_ekf
+#else
+#define TRACKER mh_tracker_cv_ukf
+#endif
 
 enum { TICK = 500, ANCHORS = 4 };
 
@@ -18,7 +24,7 @@ void bench_setup(void)
 {
     struct mh_cv_config config;
     mh_cv_config_default(&config);
-    (void)mh_tracker_cv_ukf.init(&bench_state, &config, TICK);
+    (void)TRACKER.init(&bench_state, &config, TICK);
 }
 
 static void measure(unsigned anchor, unsigned tick)
@@ -46,6 +52,6 @@ void bench_prepare(unsigned step)
     expected = bench_state.counters.taken + ANCHORS;
 }
 
-void bench_step(void) { (void)mh_tracker_cv_ukf.step(&bench_state, now, set, ANCHORS, &estimate); }
+void bench_step(void) { (void)TRACKER.step(&bench_state, now, set, ANCHORS, &estimate); }
 
 bool bench_worked(void) { return bench_state.counters.taken == expected && bench_state.counters.failed == 0; }

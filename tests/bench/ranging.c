@@ -5,9 +5,16 @@
 /* nodes within 50 m of a place: eight */
 static const int32_t pitch_mm = 31000;
 
+struct mh_place ranging_target(unsigned step)
+{
+    const struct mh_place target = {8000 * (int32_t)step, 4000 * (int32_t)step, 0};
+    return target;
+}
+
 void ranging_measurements(unsigned step, uint8_t wanted, struct mh_measurement *measurements)
 {
-    const int32_t x_mm = 8000 * (int32_t)step, y_mm = 4000 * (int32_t)step;
+    const struct mh_place target = ranging_target(step);
+    const int32_t x_mm = target.x_mm, y_mm = target.y_mm;
     struct mh_random noise;
     mh_random_init(&noise, step);
     mh_q20 kept[RANGING_MEASUREMENTS_MAX]; /* distances, ascending */
@@ -15,7 +22,6 @@ void ranging_measurements(unsigned step, uint8_t wanted, struct mh_measurement *
     for (int8_t i = -2; i <= 3; i++) {
         for (int8_t j = -2; j <= 3; j++) {
             const struct mh_place node = {(x_mm / pitch_mm + i) * pitch_mm, (y_mm / pitch_mm + j) * pitch_mm, 0};
-            const struct mh_place target = {x_mm, y_mm, 0};
             const mh_q20 distance = mh_q20_from_real(mh_vec2_length(mh_place_relative(&node, &target)));
             uint8_t at = count;
             for (; at > 0 && kept[at - 1] > distance; at--) {
