@@ -243,6 +243,11 @@ class Image:
                     return self.frames[key]
         return None
 
+    def _hidden(self, text):
+        """Bytes of a frame that GCC does not tell on ARM: argument registers saved, before all others, beside the rest of a structure that came on the stack"""
+        found = re.match(r"sub(?:\.w|w)? sp, (?:sp, )?#(\d+)", text)
+        return int(found[1]) if found and self.elf.machine == 40 and int(found[1]) <= 16 else 0
+
     def _disassemble(self):
         odd = ~1 if self.elf.machine == 40 else ~0
         symbols = defaultdict(list)
@@ -251,7 +256,7 @@ class Image:
                 symbols[address & odd].append((name, file))
         self.functions, self.code, self.next = {}, {}, {}
         function = previous = None
-        sites = []
+        hidden, sites = 0, []
         for line in run(self.prefix + "objdump", "-d", "--no-show-raw-insn", self.elf.path).splitlines():
             begins = re.match(r"([0-9a-f]+) <(.*)>:$", line)
             if begins:
@@ -265,6 +270,10 @@ class Image:
             address, text = int(found[1], 16), re.sub(r"\s+", " ", re.split("[;@#](?! ?-?\\d)|;", found[2])[0].strip()) + " "
             target = re.search(r"(?:0x)?([0-9a-f]+) <", found[2])
             self.code[address] = text, target and int(target[1], 16), function
+            if address == function.address:
+                hidden = self._hidden(text)
+            elif hidden and function.frame is not None and re.match(r"v?push|stmdb(\.w)? sp!", text):
+                function.frame, hidden = function.frame + hidden, 0
             if previous is not None:
                 self.next[previous] = address
             if self.machine.by_register.match(text) and function.frame is not None and not self._returns(text, previous):

@@ -55,7 +55,8 @@ enum mh_line_kind {
     MH_LINE_FAULT
 };
 
-/* What of a mote is configured, before START: a mote has a sensor, a head and a clock if CONFIGURE names them; all else has the image's own values. */
+/* What of a mote is configured, before START. Unless CONFIGURE names them the mote has no sensor, no head and no clock, whatever it has when it runs by itself; place, protocol and tracker keep the
+ * image's own values. */
 enum mh_line_part {
     MH_LINE_MOTE,          /* mh_settings_mote */
     MH_LINE_SENSOR,        /* mh_settings_sensor */

@@ -34,7 +34,8 @@
  * from there, is at most 2^14: by the nominal values 202 m, 1/64 m. init() gives MH_ERR_ARGUMENT for a range_sd_m below 4 of these units (nominal: 0.063), for an extent above
  * 16 km and for a sensing_range_m above 300, whose covariance would be no number. Positions and velocities have 16 fractional bits; a step whose expected position or mean is
  * more than 32.7 km from the origin in x or y gives MH_ERR_NOT_FINITE, the track and the estimate as they were. Sums of squared residuals saturate, so that a particle that is very wrong
- * is very wrong still. The arithmetic's errors, a unit in a distance and 1.5e-3 in a weight, are below a hundredth of what the noise of the ranges and the density of the particles
+ * is very wrong still. So does a velocity, component by component, before it is limited to the largest speed: if the target seems to have gone faster than 32.7 km/s, as it can only within a fraction
+ * of a second, the direction is that of the saturated components, up to 45 degrees off, and the speed up to 1.41 times the largest. The arithmetic's errors, a unit in a distance and 1.5e-3 in a weight, are below a hundredth of what the noise of the ranges and the density of the particles
  * do (docs/fixed_point.md). */
 #ifndef MOTEHOUND_PFTL_H
 #define MOTEHOUND_PFTL_H
@@ -45,15 +46,17 @@
 
 #if MH_REAL_FIXED
 #define MH_PFTL_RANGE_MAX MH_REAL(300.0f)
+#define MH_PFTL_SD_MAX MH_REAL(181.0f) /* whose square is a number */
 #else
 #define MH_PFTL_RANGE_MAX 1e4f
+#define MH_PFTL_SD_MAX 1e3f
 #endif
 
 struct mh_pftl_config {
     mh_real speed_mps;       /* mean speed of the target's class, 1e-3 to 1e3; nominal 4.4704 (10 mph) */
     mh_real speed_sd_mps;    /* its standard deviation, 0 to 1e3; nominal a fifth of that */
     mh_real sensing_range_m; /* how far a node measures, 1e-2 to MH_PFTL_RANGE_MAX; nominal 50 */
-    mh_real range_sd_m;      /* standard deviation of a range, 1e-3 to 1e3; nominal 5 */
+    mh_real range_sd_m;      /* standard deviation of a range, 1e-3 to MH_PFTL_SD_MAX; nominal 5 */
     mh_real tolerance_m;     /* 0 (every position is reported) to 1e4; nominal 5 */
     uint16_t particles;      /* N, 1 to MH_PARTICLES_MAX; nominal 50 */
     uint32_t seed;           /* of the random numbers; nominal 1 */

@@ -30,7 +30,7 @@ struct mh_tracker {
 
     /* The sampling instant `time` is complete. `measurements` are those taken after the instant before and up to this
      * one, each node at most once per target, ordered by time, then by node; from a head that passes late ones on (head.h), of instants before as well. An
-     * empty set is normal: the tracker coasts.
+     * empty set is normal: the tracker coasts. At most 8,000, what fixed point can divide a variance by; a head passes MH_REPORTS_MAX on.
      * Errors: MH_NONE (state advanced, but no position at this instant), MH_ERR_TIME (not after the last instant). */
     enum mh_status (*step)(void *state, mh_tick time, const struct mh_measurement *measurements, size_t count,
                            struct mh_estimate *estimate);

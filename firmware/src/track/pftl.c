@@ -49,7 +49,7 @@ static enum mh_status init(void *state, const void *config, mh_tick interval)
         !mh_within(given->speed_mps, MH_REAL(1e-3f), MH_REAL(1e3f)) ||
         !mh_within(given->speed_sd_mps, 0, MH_REAL(1e3f)) ||
         !mh_within(given->sensing_range_m, MH_REAL(1e-2f), MH_PFTL_RANGE_MAX) ||
-        !mh_within(given->range_sd_m, MH_REAL(1e-3f), MH_REAL(1e3f)) ||
+        !mh_within(given->range_sd_m, MH_REAL(1e-3f), MH_PFTL_SD_MAX) ||
         !mh_within(given->tolerance_m, 0, MH_REAL(1e4f)) || given->particles < 1 ||
         given->particles > MH_PARTICLES_MAX) {
         return MH_ERR_ARGUMENT;

@@ -473,6 +473,10 @@ static void refuses_what_its_format_cannot_hold(void)
     config.range_sd_m = R(0.0626f);
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_pftl.init(&pftl, &config, INTERVAL));
     TEST_ASSERT_EQUAL_UINT8(6, pftl.particles.bits);
+    config.range_sd_m = R(181.1f); /* its square would not be a number */
+    TEST_ASSERT_EQUAL_INT(MH_ERR_ARGUMENT, mh_tracker_pftl.init(&pftl, &config, INTERVAL));
+    config.range_sd_m = R(181.0f);
+    TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_pftl.init(&pftl, &config, INTERVAL));
     config.speed_mps = R(900.0f); /* 5 x 2 s of it, and half the sensing range: 9 km; 16 s: farther than 16 km */
     config.range_sd_m = R(5.0f);
     TEST_ASSERT_EQUAL_INT(MH_OK, mh_tracker_pftl.init(&pftl, &config, INTERVAL));
