@@ -14,6 +14,7 @@ set(MOTEHOUND_FIXED_POINT_SOURCES
   estimate/fusion_fixed
   estimate/kalman_bytes
   estimate/kalman_fixed
+  estimate/kalman_parts
   estimate/least_squares
   estimate/node_class
   estimate/particles

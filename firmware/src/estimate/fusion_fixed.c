@@ -2,7 +2,7 @@
 
 #if MH_REAL_FIXED
 
-#include "kalman_fixed.h"
+#include "kalman_parts.h"
 #include "motehound/scaled_fixed.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "motehound/kalman.h"
+#include "kalman_parts.h"
 
 #include <string.h>
 
@@ -65,26 +65,10 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
     return status;
 }
 
-enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real variance)
+mh_real mh_kalman_variance_for(struct mh_kalman *filter, mh_real variance)
 {
-    const uint8_t n = filter->n;
-    if (n >= MH_KALMAN_STATES_MAX) {
-        return MH_ERR_CAPACITY;
-    }
-    if (!mh_finite(mean) || !mh_finite(variance)) {
-        return MH_ERR_NOT_FINITE;
-    }
-    if (variance < MH_REAL_MIN) {
-        return MH_ERR_SINGULAR;
-    }
-    mh_real *column = filter->ud + MH_PACKED(0, n);
-    for (uint_fast8_t i = 0; i < n; i++) {
-        column[i] = 0;
-    }
-    column[n] = variance;
-    filter->x[n] = mean;
-    filter->n++;
-    return MH_OK;
+    (void)filter;
+    return variance;
 }
 
 /* Copy what is in use. */
@@ -100,27 +84,6 @@ static void copy(struct mh_kalman *to, const struct mh_kalman *filter)
     memcpy(to->ud, filter->ud, (size_t)MH_PACKED_SIZE(filter->n) * sizeof to->ud[0]);
 }
 
-/* The rows of U that tie the states that do not move to the others: F times themselves. */
-static enum mh_status move_ties(struct mh_kalman *next, const struct mh_kalman *filter, const mh_real *F)
-{
-    const uint8_t n = filter->moving;
-    for (uint_fast8_t j = 0; j < n; j++) {
-        for (uint_fast8_t k = n; k < filter->n; k++) {
-            const mh_real *column = filter->ud + MH_PACKED(0, k);
-            mh_real sum = 0;
-            for (uint_fast8_t m = 0; m < n; m++) {
-                sum += F[m] * column[m];
-            }
-            if (!mh_finite(sum)) {
-                return MH_ERR_NOT_FINITE;
-            }
-            next->ud[MH_PACKED(j, k)] = sum;
-        }
-        F += n;
-    }
-    return MH_OK;
-}
-
 enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q)
 {
     const uint8_t n = filter->moving;
@@ -131,7 +94,7 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
     next.moving = n;
     if (filter->n > n) {
         copy(&next, filter);
-        if (move_ties(&next, filter, F) != MH_OK) {
+        if (mh_kalman_move_ties(&next, filter, F) != MH_OK) {
             return MH_ERR_NOT_FINITE;
         }
     }
@@ -267,8 +230,7 @@ enum mh_status mh_kalman_update(struct mh_kalman *filter, const mh_real *h, mh_r
     return MH_OK;
 }
 
-/* Element (i, j) of P, i <= j. */
-static mh_real element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j)
+mh_real mh_kalman_element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j)
 {
     mh_real sum = 0;
     for (uint_fast8_t k = j; k < filter->n; k++) {
@@ -279,14 +241,3 @@ static mh_real element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast
     }
     return sum;
 }
-
-void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P)
-{
-    for (uint_fast8_t j = 0; j < count; j++) {
-        for (uint_fast8_t i = 0; i <= j; i++) {
-            *P++ = element(filter, i, j);
-        }
-    }
-}
-
-mh_real mh_kalman_variance(const struct mh_kalman *filter, uint8_t i) { return element(filter, i, i); }

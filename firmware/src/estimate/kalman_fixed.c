@@ -1,4 +1,4 @@
-#include "kalman_fixed.h"
+#include "kalman_parts.h"
 
 #include "motehound/scaled_fixed.h"
 
@@ -88,52 +88,14 @@ enum mh_status mh_kalman_init(struct mh_kalman *filter, uint8_t n, const mh_real
     return status;
 }
 
-enum mh_status mh_kalman_append(struct mh_kalman *filter, mh_real mean, mh_real variance)
+mh_real mh_kalman_variance_for(struct mh_kalman *filter, mh_real variance)
 {
-    const uint8_t n = filter->n;
-    if (n >= MH_KALMAN_STATES_MAX) {
-        return MH_ERR_CAPACITY;
-    }
-    if (!mh_finite(mean) || !mh_finite(variance)) {
-        return MH_ERR_NOT_FINITE;
-    }
-    if (variance < MH_REAL_MIN) {
-        return MH_ERR_SINGULAR;
-    }
     const int8_t over = (int8_t)(mh_digits((uint32_t)variance) + filter->exponent - MH_SCALED_TOP);
     if (over > 0) {
         scale_variances(filter, (int8_t)-over);
         filter->exponent = (int8_t)(filter->exponent - over);
     }
-    mh_real *column = filter->ud + MH_PACKED(0, n);
-    for (uint_fast8_t i = 0; i < n; i++) {
-        column[i] = 0;
-    }
-    column[n] = mh_max(mh_scaled(variance, filter->exponent), MH_SCALED_LEAST);
-    filter->x[n] = mean;
-    filter->n++;
-    return MH_OK;
-}
-
-/* The rows of U that tie the states that do not move to the others: F times themselves. */
-static enum mh_status move_ties(struct mh_kalman *next, const struct mh_kalman *filter, const mh_real *F)
-{
-    const uint8_t n = filter->moving;
-    for (uint_fast8_t j = 0; j < n; j++) {
-        for (uint_fast8_t k = n; k < filter->n; k++) {
-            const mh_real *column = filter->ud + MH_PACKED(0, k);
-            mh_real sum = 0;
-            for (uint_fast8_t m = 0; m < n; m++) {
-                sum = mh_add(sum, mh_mul(F[m], column[m]));
-            }
-            if (!mh_finite(sum)) {
-                return MH_ERR_NOT_FINITE;
-            }
-            next->ud[MH_PACKED(j, k)] = sum;
-        }
-        F += n;
-    }
-    return MH_OK;
+    return mh_max(mh_scaled(variance, filter->exponent), MH_SCALED_LEAST);
 }
 
 enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, const mh_real *Q)
@@ -144,7 +106,7 @@ enum mh_status mh_kalman_predict(struct mh_kalman *filter, const mh_real *F, con
     mh_real W[MH_KALMAN_MOVING_MAX][MH_KALMAN_MOVING_MAX]; /* F U */
     uint8_t first[MH_KALMAN_MOVING_MAX];                   /* F is zero before it in this row, and so is F U */
     uint32_t noise = 0;
-    if (filter->n > n && move_ties(&next, filter, F) != MH_OK) {
+    if (filter->n > n && mh_kalman_move_ties(&next, filter, F) != MH_OK) {
         return MH_ERR_NOT_FINITE;
     }
     for (uint_fast8_t j = 0; j < n; j++) {
@@ -475,23 +437,12 @@ static mh_real element_with(const struct mh_kalman *filter, uint_fast8_t i, uint
     return sum;
 }
 
-static mh_real element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j)
+mh_real mh_kalman_element(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j)
 {
     enum { GUARD = 8 };
     const mh_real fine = element_with(filter, i, j, GUARD);
     return mh_finite(fine) ? mh_scaled(fine, -GUARD) : element_with(filter, i, j, 0);
 }
-
-void mh_kalman_covariance_of(const struct mh_kalman *filter, uint8_t count, mh_real *P)
-{
-    for (uint_fast8_t j = 0; j < count; j++) {
-        for (uint_fast8_t i = 0; i <= j; i++) {
-            *P++ = element(filter, i, j);
-        }
-    }
-}
-
-mh_real mh_kalman_variance(const struct mh_kalman *filter, uint8_t i) { return element(filter, i, i); }
 
 #else
 typedef int mh_kalman_is_float; /* C99 wants a declaration */
