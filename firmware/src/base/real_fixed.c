@@ -91,11 +91,41 @@ mh_real mh_mul(mh_real a, mh_real b)
 }
 #endif
 
+#ifdef __AVR__
+/* a b / 2^(but_one + 1), but_one < 32: this processor shifts bytes at once, bits in a loop. */
+static int32_t shifted(int32_t a, int32_t b, uint8_t but_one)
+{
+    uint32_t low = 0;
+    int32_t high = multiply(a, b, &low);
+    for (; but_one >= 8; but_one = (uint8_t)(but_one - 8)) {
+        low = low >> 8 | (uint32_t)high << 24;
+        high >>= 8;
+    }
+    for (; but_one > 0; but_one--) {
+        low = low >> 1 | (uint32_t)high << 31;
+        high >>= 1;
+    }
+    if (high != 0 && high != -1) {
+        return high < 0 ? -MH_REAL_INFINITE : MH_REAL_INFINITE;
+    }
+    const uint32_t size = (low >> 1 | (uint32_t)high << 31) + (low & 1);
+    if (high == 0) {
+        return size > MH_REAL_MAX ? MH_REAL_INFINITE : (int32_t)size;
+    }
+    return (int32_t)size < -MH_REAL_MAX ? -MH_REAL_INFINITE : (int32_t)size;
+}
+#endif
+
 int32_t mh_mul_shift(int32_t a, int32_t b, uint8_t shift)
 {
     if (shift == 0) {
         return mh_real_saturate((int64_t)a * b);
     }
+#ifdef __AVR__
+    if (shift <= 32) {
+        return shifted(a, b, (uint8_t)(shift - 1));
+    }
+#endif
     uint32_t low = shift <= 32 ? (uint32_t)1 << (shift - 1) : 0;
     int32_t high = multiply(a, b, &low);
     if (shift > 32) {

@@ -21,19 +21,26 @@ uint8_t mh_digits(uint32_t a)
     return (uint8_t)(count + of_four[a]);
 }
 
+/* a / 2^15, rounded down: an AVR shifts bytes at once, bits in a loop. */
+#ifdef __AVR__
+static inline int32_t without_15_bits(int32_t a) { return (a >> 16) * 2 + ((uint16_t)a >> 15); }
+#else
+static inline int32_t without_15_bits(int32_t a) { return a >> 15; }
+#endif
+
 /* A straight line, two steps of Newton in 16 bits, and one in 32, in which all but the last 32 bits of 2^45 - a x are known to be 0. */
 struct mh_reciprocal mh_reciprocal(int32_t a)
 {
     const uint8_t exponent = (uint8_t)(mh_digits((uint32_t)a) - 1);
     const uint32_t normal = (uint32_t)a << (30 - exponent);
-    const int32_t short_of = (int32_t)(normal >> 15); /* 1 to 2, with 15 fractional bits, like x */
-    int32_t x = 46261 - ((15420 * short_of) >> 15);
+    const int32_t short_of = without_15_bits((int32_t)normal); /* 1 to 2, with 15 fractional bits, like x */
+    int32_t x = 46261 - without_15_bits(15420 * short_of);
     for (uint8_t step = 0; step < 2; step++) {
-        const int32_t error = 32768 - ((short_of * x + 16384) >> 15);
-        x += (x * error + 16384) >> 15;
+        const int32_t error = 32768 - without_15_bits(short_of * x + 16384);
+        x += without_15_bits(x * error + 16384);
     }
     const int32_t rest = (int32_t)(0 - normal * (uint32_t)x);
-    return (struct mh_reciprocal){x * 32768 + ((x * (rest >> 15)) >> 15), exponent};
+    return (struct mh_reciprocal){x * 32768 + without_15_bits(x * without_15_bits(rest)), exponent};
 }
 
 int32_t mh_scaled(int32_t a, int8_t shift)

@@ -422,16 +422,17 @@ enum mh_status mh_kalman_update_scaled(struct mh_kalman *filter, const mh_real *
 /* Element (i, j) of P, i <= j, times 2^guard. */
 static mh_real element_with(const struct mh_kalman *filter, uint_fast8_t i, uint_fast8_t j, uint8_t guard)
 {
-    mh_real sum = 0;
-    for (uint_fast8_t k = j; k < filter->n; k++) {
-        const mh_real *column = filter->ud + MH_PACKED(0, k);
-        const mh_real left = i == k ? MH_REAL_ONE : column[i];
-        const mh_real right = j == k ? MH_REAL_ONE : column[j];
+    const int8_t down = (int8_t)(MH_REAL_BITS + filter->exponent - guard);
+    const mh_real *column = filter->ud + MH_PACKED(0, j);
+    mh_real sum = mh_product(column[j], i == j ? MH_REAL_ONE : column[i], down); /* U_jj = 1 */
+    for (uint_fast8_t k = (uint_fast8_t)(j + 1); k < filter->n; k++) {
+        column += k;
+        const mh_real left = column[i], right = column[j];
         if (left != 0 && right != 0) {
             const int8_t all = (int8_t)(mh_digits((uint32_t)mh_abs(left)) + mh_digits((uint32_t)mh_abs(right)));
             const int8_t over = all > 30 ? (int8_t)(all - 30) : 0;
-            sum = mh_add(sum, mh_product(column[k], mh_product(left, right, over),
-                                         (int8_t)(2 * MH_REAL_BITS - over + filter->exponent - guard)));
+            sum =
+                mh_add(sum, mh_product(column[k], mh_product(left, right, over), (int8_t)(MH_REAL_BITS - over + down)));
         }
     }
     return sum;

@@ -141,7 +141,7 @@ static enum mh_status take_fix(const struct mh_acoustic_config *config, const st
                                struct mh_acoustic_track *track)
 {
     enum mh_status status;
-    const bool outside = mh_acoustic_surprise(track, fix) > MH_ACOUSTIC_GATE;
+    const bool outside = mh_acoustic_surprise(scene, fix) > MH_ACOUSTIC_GATE;
     if (config->filtered && outside && !scene->alone && track->refused < GATE_PATIENCE) {
         return MH_NONE;
     }
@@ -178,16 +178,16 @@ static void state_identity(const struct mh_acoustic_track *track, struct mh_esti
 /* The track, predicted to `time`. */
 static void answer(const struct mh_acoustic_track *track, mh_tick time, struct mh_estimate *estimate)
 {
+    mh_real P[MH_PACKED_SIZE(MOTION)];
+    mh_kalman_covariance(&track->filter, P);
     struct mh_estimate stated = {
         .origin = track->origin,
         .time = time,
         .position = mh_acoustic_position(track),
         .velocity = mh_acoustic_velocity(track),
-        .covariance = mh_acoustic_covariance(track),
+        .covariance = {P[0], P[1], P[2]},
         .states = MOTION,
     };
-    mh_real P[MH_PACKED_SIZE(MOTION)];
-    mh_kalman_covariance(&track->filter, P);
     memcpy(stated.covariance_more, P + MH_PACKED_SIZE(2), sizeof stated.covariance_more);
     stated.raw = stated.stored = stated.position;
     stated.stored_velocity = stated.velocity;
@@ -214,7 +214,7 @@ static enum mh_status locate(const struct mh_acoustic *acoustic, struct mh_acous
     const enum mh_status status = acoustic->kind->locate(config, scene->heard, scene->heard_count, fix);
     if (status == MH_OK && acoustic->tracking && config->mirror_check) {
         mh_acoustic_check_mirror(config, scene, fix);
-        if (acoustic->kind->reconsider && mh_acoustic_surprise(&scene->own, fix) > MH_ACOUSTIC_GATE) {
+        if (acoustic->kind->reconsider && mh_acoustic_surprise(scene, fix) > MH_ACOUSTIC_GATE) {
             acoustic->kind->reconsider(config, scene, fix);
         }
     }
@@ -279,6 +279,9 @@ enum mh_status mh_acoustic_step(void *state, mh_tick time, const struct mh_measu
         scene.own.origin = measurements[0].place;
         scene.own.filter.x[0] = scene.own.filter.x[1] = 0;
         mh_group_single(&scene.own.group, track->group.targets[0].target);
+    }
+    if (tracking) {
+        scene.covariance = mh_acoustic_covariance(&scene.own);
     }
     mh_acoustic_look_around(acoustic, time, &scene);
     const bool jointly =

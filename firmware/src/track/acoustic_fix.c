@@ -18,11 +18,11 @@ void mh_acoustic_state_nominal(const struct mh_acoustic_config *config, struct m
     fix->covariance = covariance;
 }
 
-mh_real mh_acoustic_surprise(const struct mh_acoustic_track *track, const struct mh_acoustic_fix *fix)
+mh_real mh_acoustic_surprise(const struct mh_acoustic_scene *scene, const struct mh_acoustic_fix *fix)
 {
-    const struct mh_sym2 P = mh_acoustic_covariance(track), *R = &fix->covariance;
-    const mh_real xx = mh_add(P.xx, R->xx), xy = mh_add(P.xy, R->xy), yy = mh_add(P.yy, R->yy);
-    const struct mh_vec2 off = mh_vec2_between(mh_acoustic_position(track), fix->position);
+    const struct mh_sym2 *P = &scene->covariance, *R = &fix->covariance;
+    const mh_real xx = mh_add(P->xx, R->xx), xy = mh_add(P->xy, R->xy), yy = mh_add(P->yy, R->yy);
+    const struct mh_vec2 off = mh_vec2_between(mh_acoustic_position(&scene->own), fix->position);
 #if MH_REAL_FIXED
     /* products of three have no room: that of y, and of what y does not say of x */
     const mh_real across = mh_add(off.x, -mh_mul(mh_div(xy, yy), off.y));
@@ -53,11 +53,11 @@ void mh_acoustic_check_mirror(const struct mh_acoustic_config *config, const str
     const struct mh_distance_table exact = {config->sensing_range_m, 0, MH_DISTANCE_MIDDLE};
     const struct mh_vec2 expected = mh_acoustic_position(&scene->own);
     const size_t count = scene->heard_count < 3 ? scene->heard_count : 3;
-    const mh_real off = mh_vec2_length(mh_vec2_between(expected, fix->position));
-    mh_real least = mh_mul(MIRROR_GAIN, off);
-    if (!(off > MIRROR_M)) {
+    const struct mh_vec2 off = mh_vec2_between(expected, fix->position);
+    if (!(mh_vec2_square(off) > mh_wide_mul(MIRROR_M, MIRROR_M))) {
         return;
     }
+    mh_real least = mh_mul(MIRROR_GAIN, mh_vec2_length(off));
     struct mh_circle circles[3];
     for (size_t i = 0; i < count; i++) {
         circles[i].centre = scene->heard[i].place;

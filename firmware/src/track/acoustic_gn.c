@@ -63,8 +63,8 @@ static void reconsider_gn(const struct mh_acoustic_config *config, const struct 
         return;
     }
     other.covariance = covariance_of(&information, least_information(config));
-    if (mh_acoustic_surprise(&scene->own, &other) + misfit(&config->sound, scene->heard, count, other.position) <
-        mh_acoustic_surprise(&scene->own, fix) + misfit(&config->sound, scene->heard, count, fix->position)) {
+    if (mh_acoustic_surprise(scene, &other) + misfit(&config->sound, scene->heard, count, other.position) <
+        mh_acoustic_surprise(scene, fix) + misfit(&config->sound, scene->heard, count, fix->position)) {
         *fix = other;
     }
 }
@@ -132,10 +132,9 @@ static enum mh_status locate_jointly(const struct mh_acoustic_config *config, st
     struct mh_source_fix fixes[MH_SOURCES_MAX];
     uint8_t first[MH_TARGETS_MAX] = {0}; /* source of each; 0, an own one: it is not in the fit */
     struct mh_group *group = &scene->own.group;
-    const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     const struct mh_vec2 expected =
         group->count > 1 ? mh_acoustic_expected_centroid(config, scene) : mh_acoustic_position(&scene->own);
-    size_t count = sources_of(config, group, expected, &covariance, sources);
+    size_t count = sources_of(config, group, expected, &scene->covariance, sources);
     for (uint8_t i = nearest(scene, first); i < scene->others_count; i = nearest(scene, first)) {
         const struct mh_acoustic_other *other = &scene->others[i];
         if (count + other->group.count > MH_SOURCES_MAX) {

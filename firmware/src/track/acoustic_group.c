@@ -126,9 +126,8 @@ static bool weigh(const struct mh_acoustic_scene *scene, struct mh_vec2 *centroi
 struct mh_vec2 mh_acoustic_expected_centroid(const struct mh_acoustic_config *config,
                                              const struct mh_acoustic_scene *scene)
 {
-    const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     struct mh_vec2 centroid = mh_acoustic_position(&scene->own);
-    if (0.5f * (covariance.xx + covariance.yy) > mh_squared(config->group.member_sd_m)) {
+    if (0.5f * (scene->covariance.xx + scene->covariance.yy) > mh_squared(config->group.member_sd_m)) {
         (void)weigh(scene, &centroid);
     }
     return centroid;

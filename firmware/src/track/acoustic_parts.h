@@ -65,6 +65,7 @@ struct mh_acoustic_other {
 
 struct mh_acoustic_scene {
     struct mh_acoustic_track own; /* predicted to the instant */
+    struct mh_sym2 covariance;    /* of its position, as predicted */
     struct mh_acoustic_other others[MH_TARGETS_MAX];
     uint8_t others_count;
     bool alone;                                   /* none of them is near */
@@ -131,8 +132,8 @@ void mh_acoustic_state_nominal(const struct mh_acoustic_config *config, struct m
 void mh_acoustic_check_mirror(const struct mh_acoustic_config *config, const struct mh_acoustic_scene *scene,
                               struct mh_acoustic_fix *fix);
 
-/* The fix's distance from where the own track is expected, chi-square. */
-mh_real mh_acoustic_surprise(const struct mh_acoustic_track *track, const struct mh_acoustic_fix *fix);
+/* The fix's distance from where the own track is expected, chi-square. Before the fix goes into it. */
+mh_real mh_acoustic_surprise(const struct mh_acoustic_scene *scene, const struct mh_acoustic_fix *fix);
 #define MH_ACOUSTIC_GATE MH_REAL(25.0f)
 
 /* ---- acoustic_group.c: groups ---- */

@@ -20,6 +20,11 @@
 
 static mh_real distance(struct mh_vec2 a, struct mh_vec2 b) { return mh_vec2_length(mh_vec2_between(b, a)); }
 
+static bool is_within(struct mh_vec2 a, struct mh_vec2 b, mh_real range)
+{
+    return mh_vec2_square(mh_vec2_between(a, b)) <= mh_wide_mul(range, range);
+}
+
 static mh_real gap(const struct mh_group *a, struct mh_vec2 at_a, const struct mh_group *b, struct mh_vec2 at_b)
 {
     return distance(at_a, at_b) - mh_group_extent(a) - mh_group_extent(b);
@@ -156,15 +161,21 @@ static struct mh_heard heard_of(const struct mh_acoustic *acoustic, const struct
     return heard;
 }
 
-/* True if another track is expected nearer to it than the own one. */
-static bool is_others(const struct mh_acoustic_scene *scene, mh_real own, struct mh_vec2 place)
+/* True if another track is expected nearer to it than `off`. */
+static bool is_nearer_to_others(const struct mh_acoustic_scene *scene, mh_real off, struct mh_vec2 place)
 {
     for (uint8_t j = 0; j < scene->others_count; j++) {
-        if (distance_to(&scene->others[j].group, scene->others[j].position, place) < own) {
+        if (distance_to(&scene->others[j].group, scene->others[j].position, place) < off) {
             return true;
         }
     }
     return false;
+}
+
+/* The same than `own` is. */
+static bool is_others(const struct mh_acoustic_scene *scene, struct mh_vec2 own, struct mh_vec2 place)
+{
+    return scene->others_count > 0 && is_nearer_to_others(scene, distance(own, place), place);
 }
 
 /* Nobody else is near: what is heard about the loudest node, for the target need not be where it is expected. That node is looked for where it can be, and if there is none, anywhere. */
@@ -174,26 +185,26 @@ static void listen_alone(const struct mh_acoustic *acoustic, const struct mh_mea
     const struct mh_acoustic_config *config = &acoustic->config;
     mh_real astray = MH_REAL_MAX;
     if (acoustic->tracking) {
-        const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
-        astray = mh_add(config->reach_m, mh_mul(ASTRAY_SDS, mh_sqrt(mh_max(covariance.xx, covariance.yy))));
+        astray =
+            mh_add(config->reach_m, mh_mul(ASTRAY_SDS, mh_sqrt(mh_max(scene->covariance.xx, scene->covariance.yy))));
     }
     struct mh_heard loudest = {.energy = 0};
     bool expected = false;
     for (size_t i = 0; i < count; i++) {
         const struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
-        const mh_real own = distance(mh_acoustic_position(&scene->own), heard.place);
-        const bool within = own <= astray;
+        const struct mh_vec2 own = mh_acoustic_position(&scene->own);
+        const bool within = is_within(own, heard.place, astray);
         if ((within > expected || (within == expected && heard.energy > loudest.energy)) && heard.energy > 0 &&
             !(acoustic->tracking && is_others(scene, own, heard.place))) {
             loudest = heard;
             expected = within;
         }
     }
+    const mh_real about = mh_add(config->reach_m, mh_mul(LOUDEST_RANGES, config->sensing_range_m));
     for (size_t i = 0; i < count && loudest.energy > 0; i++) {
         const struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
-        const mh_real away = distance(heard.place, loudest.place);
-        if (heard.energy > 0 && away <= mh_add(config->reach_m, mh_mul(LOUDEST_RANGES, config->sensing_range_m)) &&
-            !is_others(scene, away, heard.place)) {
+        if (heard.energy > 0 && is_within(loudest.place, heard.place, about) &&
+            !is_others(scene, loudest.place, heard.place)) {
             mh_heard_insert(scene->heard, &scene->heard_count, MH_ACOUSTIC_HEARD_MAX, &heard);
         }
     }
@@ -211,7 +222,7 @@ static void listen_among(const struct mh_acoustic *acoustic, bool jointly, const
     for (size_t i = 0; i < count; i++) {
         struct mh_heard heard = heard_of(acoustic, scene, &measurements[i]);
         const mh_real off = distance_to(&scene->own.group, mh_acoustic_position(&scene->own), heard.place);
-        const bool own = off <= reach || (off <= group_reach && !is_others(scene, off, heard.place));
+        const bool own = off <= reach || (off <= group_reach && !is_nearer_to_others(scene, off, heard.place));
         bool near = own;
         for (uint8_t j = 0; j < scene->others_count && jointly && !near; j++) {
             const struct mh_acoustic_other *other = &scene->others[j];
@@ -242,6 +253,9 @@ void mh_acoustic_listen(const struct mh_acoustic *acoustic, bool jointly, const 
 uint16_t mh_acoustic_exchanged(const struct mh_acoustic_scene *scene, mh_real seconds, mh_real sds)
 {
     uint16_t exchanged = 0;
+    if (scene->others_count == 0) {
+        return 0;
+    }
     const struct mh_vec2 position = mh_acoustic_position(&scene->own), velocity = mh_acoustic_velocity(&scene->own);
     const struct mh_sym2 covariance = mh_acoustic_covariance(&scene->own);
     for (uint8_t i = 0; i < scene->others_count; i++) {
