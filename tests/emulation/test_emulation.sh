@@ -68,6 +68,9 @@ if [ -z "$ARITHMETIC" ]; then
     same han 590=host,548=host "${han[@]}" # the second is where the target begins
     same xu 16=host,0=host,5=host "${xu[@]}"
     same fed 16=host,0=host,5=host "${xu[@]}" --set fusion.rule=hif_feedback
+else
+    han+=(--set tracker.name=dm)
+    same han 597=host,555=host "${han[@]}"
 fi
 
 # a mote that dies and comes back, and several runs
@@ -90,6 +93,8 @@ if [ ${#missing[@]} -eq 0 ]; then
         same xu 16=atmega128,0=cortex-m0,7=cortex-m0 "${xu[@]}"                       # the centre and two heads
         refused 'more than its image has room for: clusters' "$MOTEHOUND" run "${xu[@]}" --set network.nodes=18 --set clusters.nodes=3,4,5,6 --out no --emulate 18=atmega128
         refused 'more than its image has room for: tracker.separation joint' "$MOTEHOUND" run "${han[@]}" --set tracker.separation=joint --out no --emulate 590=atmega128
+    else
+        same han 597=atmega128,558=atmega128,555=cortex-m0,601=cortex-m0 "${han[@]}" # likewise
     fi
 elif [ -n "$ALL_BOARDS" ]; then
     complain "${missing[*]}"
