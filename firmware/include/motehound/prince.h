@@ -95,7 +95,8 @@ struct mh_prince_entry {
 /* What the protocol asks of the mote besides protocol.h: of its tracker (tracker.h). `context` is the node's. Errors are the tracker's; saved tracks longer than
  * MH_PRINCE_TRACK_BYTES are MH_ERR_CAPACITY. */
 struct mh_prince_port {
-    /* A step at `time` of the track `own` (length 0: it begins), among `others` -> *estimate, the track as saved: bytes[0 .. *length). */
+    /* A step at `time` of the track `own` (length 0: it begins), among `others` -> *estimate, the track as saved: bytes[0 .. *length). Of a track that cannot be
+     * saved *estimate is set all the same: a second one would lie on the stack while the tracker works. */
     enum mh_status (*localise)(void *context, const struct mh_saved_track *own, const struct mh_saved_track *others,
                                size_t count, mh_tick time, const struct mh_measurement *measurements,
                                size_t measurement_count, struct mh_estimate *estimate, uint8_t *bytes, size_t *length);

@@ -134,12 +134,46 @@ static void square_of(uint8_t n, const mh_real *A, mh_real *B)
 
 enum optimum { TRACE, DETERMINANT };
 
+/* One step of the fixed point: weights of the estimates with this information -> better ones. */
+static enum mh_status improve(uint8_t n, uint8_t count, mh_real I[][MH_PACKED_SIZE(MH_STATES_MAX)],
+                              enum optimum optimum, mh_real *share, mh_real *moved)
+{
+    mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)] = {0}, PP[MH_PACKED_SIZE(MH_STATES_MAX)];
+    for (uint_fast8_t i = 0; i < count; i++) {
+        for (uint_fast8_t k = 0; k < mh_packed_size(n); k++) {
+            P[k] += share[i] * I[i][k];
+        }
+    }
+    const enum mh_status status = mh_cholesky_factor(n, P);
+    if (status != MH_OK) {
+        return status;
+    }
+    mh_cholesky_invert(n, P);
+    if (optimum == TRACE) {
+        square_of(n, P, PP);
+    }
+    mh_real next[MH_FUSED_MAX], sum = 0;
+    for (uint_fast8_t i = 0; i < count; i++) {
+        next[i] = share[i] * (optimum == TRACE ? mh_sqrt(trace_of_product(n, PP, I[i])) : trace_of_product(n, P, I[i]));
+        sum += next[i];
+    }
+    if (!mh_finite(sum) || !(sum > 0)) {
+        return MH_ERR_NOT_FINITE;
+    }
+    normalise(count, next);
+    *moved = 0;
+    for (uint_fast8_t i = 0; i < count; i++) {
+        *moved = mh_max(*moved, mh_abs(next[i] - share[i]));
+        share[i] = next[i];
+    }
+    return MH_OK;
+}
+
 static enum mh_status optimise(const struct mh_gaussian *estimates, uint8_t count, enum optimum optimum, mh_real *w)
 {
     if (check_numbers(estimates, count) != MH_OK) {
         return MH_ERR_ARGUMENT;
     }
-    const uint8_t n = estimates[0].n;
     mh_real I[MH_FUSED_MAX][MH_PACKED_SIZE(MH_STATES_MAX)];
     mh_real share[MH_FUSED_MAX];
     for (uint_fast8_t i = 0; i < count; i++) {
@@ -151,34 +185,9 @@ static enum mh_status optimise(const struct mh_gaussian *estimates, uint8_t coun
     }
     mh_real moved = 1;
     for (int step = 0; step < STEPS && moved > 1e-6f; step++) {
-        mh_real P[MH_PACKED_SIZE(MH_STATES_MAX)] = {0}, PP[MH_PACKED_SIZE(MH_STATES_MAX)];
-        for (uint_fast8_t i = 0; i < count; i++) {
-            for (uint_fast8_t k = 0; k < mh_packed_size(n); k++) {
-                P[k] += share[i] * I[i][k];
-            }
-        }
-        const enum mh_status status = mh_cholesky_factor(n, P);
+        const enum mh_status status = improve(estimates[0].n, count, I, optimum, share, &moved);
         if (status != MH_OK) {
             return status;
-        }
-        mh_cholesky_invert(n, P);
-        if (optimum == TRACE) {
-            square_of(n, P, PP);
-        }
-        mh_real next[MH_FUSED_MAX], sum = 0;
-        for (uint_fast8_t i = 0; i < count; i++) {
-            next[i] =
-                share[i] * (optimum == TRACE ? mh_sqrt(trace_of_product(n, PP, I[i])) : trace_of_product(n, P, I[i]));
-            sum += next[i];
-        }
-        if (!mh_finite(sum) || !(sum > 0)) {
-            return MH_ERR_NOT_FINITE;
-        }
-        normalise(count, next);
-        moved = 0;
-        for (uint_fast8_t i = 0; i < count; i++) {
-            moved = mh_max(moved, mh_abs(next[i] - share[i]));
-            share[i] = next[i];
         }
     }
     memcpy(w, share, count * sizeof w[0]);

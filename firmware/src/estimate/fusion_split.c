@@ -84,67 +84,77 @@ static mh_real split_trace(const void *context, mh_real w)
 /* Pi += K Pai K', K = P I: what comes of an independent part. */
 static void add_part(uint8_t n, const mh_real *P, const mh_real *I, mh_real weight, const mh_real *part, mh_real *sum)
 {
-    mh_real K[MH_STATES_MAX][MH_STATES_MAX], moved[MH_STATES_MAX][MH_STATES_MAX];
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            K[i][j] = 0;
+    mh_real K[MH_STATES_MAX][MH_STATES_MAX], moved[MH_STATES_MAX];
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            K[j][i] = 0;
             for (int k = 0; k < n; k++) {
-                K[i][j] += P[mh_packed_index(i, k)] * I[mh_packed_index(k, j)];
+                K[j][i] += P[mh_packed_index(j, k)] * I[mh_packed_index(k, i)];
             }
         }
-        mh_symmetric_times(n, part, K[i], moved[i]);
-    }
-    for (int j = 0; j < n; j++) {
+        mh_symmetric_times(n, part, K[j], moved);
         for (int i = 0; i <= j; i++) {
             for (int k = 0; k < n; k++) {
-                *sum += weight * K[i][k] * moved[j][k];
+                *sum += weight * K[i][k] * moved[k];
             }
             sum++;
         }
     }
 }
 
+static enum mh_status add_up(const struct pair *pair, const mh_real *of_a, const mh_real *of_b,
+                             struct mh_gaussian *whole)
+{
+    struct mh_information_sum sum;
+    mh_information_begin(&sum, &pair->a->dependent);
+    mh_information_add(&sum, 1, of_a, pair->a->dependent.x);
+    mh_information_add(&sum, 1, of_b, pair->b->dependent.x);
+    return mh_information_finish(&sum, whole);
+}
+
+/* Both parts as sums of products: Pd = P - Pi, as P = P (Pa^-1 + Pb^-1) P. */
+static enum mh_status part(const struct pair *pair, mh_real w, const mh_real *of_a, const mh_real *of_b,
+                           const struct mh_gaussian *whole, struct mh_split_gaussian *fused)
+{
+    const struct mh_split_gaussian *a = pair->a, *b = pair->b;
+    const uint8_t n = whole->n;
+    struct mh_split_gaussian result;
+    memset(&result, 0, sizeof result);
+    result.dependent.n = n;
+    memcpy(result.dependent.x, whole->x, sizeof whole->x);
+    add_part(n, whole->P, of_a, 1, a->independent, result.independent);
+    add_part(n, whole->P, of_b, 1, b->independent, result.independent);
+    add_part(n, whole->P, of_a, 1 / weight_of(w), a->dependent.P, result.dependent.P);
+    add_part(n, whole->P, of_b, 1 / weight_of(1 - w), b->dependent.P, result.dependent.P);
+    const enum mh_status status = mh_split_check(&result);
+    if (status == MH_OK) {
+        *fused = result;
+    }
+    return status;
+}
+
+static enum mh_status join_at(const struct pair *pair, mh_real w, struct mh_split_gaussian *fused)
+{
+    mh_real of_a[MH_PACKED_SIZE(MH_STATES_MAX)], of_b[MH_PACKED_SIZE(MH_STATES_MAX)];
+    if (split_information(pair->a, weight_of(w), of_a) != MH_OK ||
+        split_information(pair->b, weight_of(1 - w), of_b) != MH_OK) {
+        return MH_ERR_SINGULAR;
+    }
+    struct mh_gaussian whole;
+    const enum mh_status status = add_up(pair, of_a, of_b, &whole);
+    return status == MH_OK ? part(pair, w, of_a, of_b, &whole, fused) : status;
+}
+
 enum mh_status mh_fusion_split(const struct mh_split_gaussian *a, const struct mh_split_gaussian *b,
                                struct mh_split_gaussian *fused)
 {
     const struct pair pair = {a, b};
-    const uint8_t n = a->dependent.n;
-    if (b->dependent.n != n) {
+    if (b->dependent.n != a->dependent.n) {
         return MH_ERR_ARGUMENT;
     }
     enum mh_status status = mh_split_check(a);
     if (status == MH_OK) {
         status = mh_split_check(b);
     }
-    if (status != MH_OK) {
-        return status;
-    }
-    const mh_real w = mh_smallest_cost(split_trace, &pair);
-    mh_real of_a[MH_PACKED_SIZE(MH_STATES_MAX)], of_b[MH_PACKED_SIZE(MH_STATES_MAX)];
-    if (split_information(a, weight_of(w), of_a) != MH_OK || split_information(b, weight_of(1 - w), of_b) != MH_OK) {
-        return MH_ERR_SINGULAR;
-    }
-    struct mh_information_sum sum;
-    struct mh_gaussian whole;
-    mh_information_begin(&sum, &a->dependent);
-    mh_information_add(&sum, 1, of_a, a->dependent.x);
-    mh_information_add(&sum, 1, of_b, b->dependent.x);
-    status = mh_information_finish(&sum, &whole);
-    if (status != MH_OK) {
-        return status;
-    }
-    /* both parts as sums of products: Pd = P - Pi, as P = P (Pa^-1 + Pb^-1) P */
-    struct mh_split_gaussian result;
-    memset(&result, 0, sizeof result);
-    result.dependent.n = n;
-    memcpy(result.dependent.x, whole.x, sizeof whole.x);
-    add_part(n, whole.P, of_a, 1, a->independent, result.independent);
-    add_part(n, whole.P, of_b, 1, b->independent, result.independent);
-    add_part(n, whole.P, of_a, 1 / weight_of(w), a->dependent.P, result.dependent.P);
-    add_part(n, whole.P, of_b, 1 / weight_of(1 - w), b->dependent.P, result.dependent.P);
-    status = mh_split_check(&result);
-    if (status == MH_OK) {
-        *fused = result;
-    }
-    return status;
+    return status == MH_OK ? join_at(&pair, mh_smallest_cost(split_trace, &pair), fused) : status;
 }

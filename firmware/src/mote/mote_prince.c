@@ -36,7 +36,6 @@ static enum mh_status localise(void *context, const struct mh_saved_track *own, 
                                size_t measurement_count, struct mh_estimate *estimate, uint8_t *bytes, size_t *length)
 {
     const struct mh_mote *mote = context;
-    struct mh_estimate found;
     enum mh_status status = begin(mote, own);
     if (status != MH_OK) {
         return status;
@@ -46,15 +45,9 @@ static enum mh_status localise(void *context, const struct mh_saved_track *own, 
         status = head->tracker->among(head->tracker_state, own->target, others, count);
     }
     if (status == MH_OK) {
-        status = head->tracker->step(head->tracker_state, time, measurements, measurement_count, &found);
+        status = head->tracker->step(head->tracker_state, time, measurements, measurement_count, estimate);
     }
-    if (status == MH_OK) {
-        status = save(mote, bytes, length);
-    }
-    if (status == MH_OK) {
-        *estimate = found;
-    }
-    return status;
+    return status == MH_OK ? save(mote, bytes, length) : status;
 }
 
 static enum mh_status expect(void *context, const struct mh_saved_track *track, mh_tick time,

@@ -46,7 +46,19 @@ static int16_t since_fix_cs(const struct mh_prince_row *row, mh_tick time)
     return to_i16(mh_max(mh_seconds_between(row->found, time), 0), 100);
 }
 
-static void say_awake(struct mh_prince *p, const struct mh_prince_row *row)
+/* What did not go into the awake_t, from `first` on. */
+static void say_rest(struct mh_prince *p, const struct mh_prince_row *row, uint8_t first)
+{
+    struct mh_message message = {.kind = MH_MESSAGE_REST,
+                                 .as.rest = {.sender = (int32_t)p->node->id,
+                                             .target = (int32_t)row->target,
+                                             .generation = (int16_t)row->generation,
+                                             .length = (uint8_t)(row->length - first)}};
+    memcpy(message.as.rest.data, row->bytes + first, message.as.rest.length);
+    mh_prince_send(p, &message);
+}
+
+static void say_begin(struct mh_prince *p, const struct mh_prince_row *row, uint8_t first)
 {
     const struct mh_place fix = fix_of(row);
     const struct mh_vec2 head = mh_place_relative(&p->node->place, &fix);
@@ -67,19 +79,17 @@ static void say_awake(struct mh_prince *p, const struct mh_prince_row *row)
                                               .extent_cm = (int16_t)row->extent_cm,
                                               .members = row->members,
                                               .length = row->length}};
-    const uint8_t first = row->length < MH_AWAKE_BYTES ? row->length : MH_AWAKE_BYTES;
     memcpy(message.as.awake.speeds, row->speeds, sizeof row->speeds);
     memcpy(message.as.awake.data, row->bytes, first);
     mh_prince_send(p, &message);
+}
+
+static void say_awake(struct mh_prince *p, const struct mh_prince_row *row)
+{
+    const uint8_t first = row->length < MH_AWAKE_BYTES ? row->length : MH_AWAKE_BYTES;
+    say_begin(p, row, first);
     if (row->length > first) {
-        const struct mh_message rest = {.kind = MH_MESSAGE_REST};
-        message = rest;
-        message.as.rest.sender = (int32_t)p->node->id;
-        message.as.rest.target = (int32_t)row->target;
-        message.as.rest.generation = (int16_t)row->generation;
-        message.as.rest.length = (uint8_t)(row->length - first);
-        memcpy(message.as.rest.data, row->bytes + first, message.as.rest.length);
-        mh_prince_send(p, &message);
+        say_rest(p, row, first);
     }
 }
 

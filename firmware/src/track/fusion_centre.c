@@ -400,14 +400,19 @@ static enum mh_status feedback(const void *state, uint8_t *bytes, size_t *length
 
 void mh_fusion_centre_config_default(struct mh_fusion_centre_config *config)
 {
-    const struct mh_gaussian start = {N, {10, 0.8f, 20, 0.6f}, {1, 0, 0.04f, 0, 0, 1, 0, 0, 0, 0.04f}};
-    *config = (struct mh_fusion_centre_config){
-        .rule = MH_FUSION_CI,
-        .clusters = 4,
-        .motion = {500, {5e-5f, 1e-4f}},
-        .keep = 30000,
-        .start = start,
-    };
+    static const float x[N] = {10, 0.8f, 20, 0.6f}, variances[N] = {1, 0.04f, 1, 0.04f};
+    memset(config, 0, sizeof *config);
+    config->rule = MH_FUSION_CI;
+    config->clusters = 4;
+    config->motion.tick = 500;
+    config->motion.variance.x = 5e-5f;
+    config->motion.variance.y = 1e-4f;
+    config->keep = 30000;
+    config->start.n = N;
+    for (int i = 0; i < N; i++) {
+        config->start.x[i] = x[i];
+        config->start.P[MH_PACKED(i, i)] = variances[i];
+    }
 }
 
 const struct mh_centre mh_centre_fusion = {
