@@ -20,7 +20,8 @@ static enum mh_status why_not(const struct mh_gaussian *gaussian)
     return all_finite(gaussian->P, mh_packed_size(gaussian->n)) ? MH_ERR_SINGULAR : MH_ERR_NOT_FINITE;
 }
 
-enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian)
+/* L with P = L L' */
+static enum mh_status factor(const struct mh_gaussian *gaussian, mh_real *L)
 {
     const uint8_t n = gaussian->n;
     if (n < 1 || n > MH_STATES_MAX) {
@@ -29,16 +30,24 @@ enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh
     if (!all_finite(gaussian->x, n)) {
         return MH_ERR_NOT_FINITE;
     }
-    root->n = n;
-    memcpy(root->x, gaussian->x, n * sizeof root->x[0]);
-    memcpy(root->L, gaussian->P, mh_packed_size(n) * sizeof root->L[0]);
-    return mh_cholesky_factor(n, root->L) == MH_OK ? MH_OK : why_not(gaussian);
+    memcpy(L, gaussian->P, mh_packed_size(n) * sizeof L[0]);
+    return mh_cholesky_factor(n, L) == MH_OK ? MH_OK : why_not(gaussian);
+}
+
+enum mh_status mh_gaussian_factor(struct mh_gaussian_root *root, const struct mh_gaussian *gaussian)
+{
+    const enum mh_status status = factor(gaussian, root->L);
+    if (status == MH_OK) {
+        root->n = gaussian->n;
+        memcpy(root->x, gaussian->x, gaussian->n * sizeof root->x[0]);
+    }
+    return status;
 }
 
 enum mh_status mh_gaussian_check(const struct mh_gaussian *gaussian)
 {
-    struct mh_gaussian_root root;
-    return mh_gaussian_factor(&root, gaussian);
+    mh_real L[MH_PACKED_SIZE(MH_STATES_MAX)];
+    return factor(gaussian, L);
 }
 
 enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian)
@@ -62,29 +71,31 @@ enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian)
 
 enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *F, const mh_real *Q)
 {
-    struct mh_gaussian_root root;
-    struct mh_gaussian next = *gaussian;
+    struct mh_gaussian next;                 /* its P is L until all of W is there */
     mh_real W[MH_STATES_MAX][MH_STATES_MAX]; /* F L */
-    enum mh_status status = mh_gaussian_factor(&root, gaussian);
+    enum mh_status status = factor(gaussian, next.P);
     if (status != MH_OK) {
         return status;
     }
-    const uint8_t n = root.n;
-    mh_real *p = next.P;
+    const uint8_t n = next.n = gaussian->n;
     for (uint_fast8_t i = 0; i < n; i++) {
-        const mh_real *row = root.L;
+        const mh_real *row = next.P;
         next.x[i] = 0;
         for (uint_fast8_t k = 0; k < n; k++) {
             W[i][k] = 0;
             const mh_real f = F[k];
             if (f != 0) {
-                next.x[i] += f * root.x[k];
+                next.x[i] += f * gaussian->x[k];
                 for (uint_fast8_t j = 0; j <= k; j++) {
                     W[i][j] += f * row[j];
                 }
             }
             row += k + 1;
         }
+        F += n;
+    }
+    mh_real *p = next.P;
+    for (uint_fast8_t i = 0; i < n; i++) {
         for (uint_fast8_t j = 0; j <= i; j++) {
             mh_real sum = *Q++;
             for (uint_fast8_t k = 0; k < n; k++) {
@@ -92,7 +103,6 @@ enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *
             }
             *p++ = sum;
         }
-        F += n;
     }
     status = mh_gaussian_settle(&next);
     if (status == MH_OK) {

@@ -400,7 +400,6 @@ static enum mh_status feedback(const void *state, uint8_t *bytes, size_t *length
 
 void mh_fusion_centre_config_default(struct mh_fusion_centre_config *config)
 {
-    static const float x[N] = {10, 0.8f, 20, 0.6f}, variances[N] = {1, 0.04f, 1, 0.04f};
     memset(config, 0, sizeof *config);
     config->rule = MH_FUSION_CI;
     config->clusters = 4;
@@ -409,10 +408,12 @@ void mh_fusion_centre_config_default(struct mh_fusion_centre_config *config)
     config->motion.variance.y = 1e-4f;
     config->keep = 30000;
     config->start.n = N;
-    for (int i = 0; i < N; i++) {
-        config->start.x[i] = x[i];
-        config->start.P[MH_PACKED(i, i)] = variances[i];
-    }
+    config->start.x[0] = 10;
+    config->start.x[1] = 0.8f;
+    config->start.x[2] = 20;
+    config->start.x[3] = 0.6f;
+    config->start.P[MH_PACKED(0, 0)] = config->start.P[MH_PACKED(2, 2)] = 1;
+    config->start.P[MH_PACKED(1, 1)] = config->start.P[MH_PACKED(3, 3)] = 0.04f;
 }
 
 const struct mh_centre mh_centre_fusion = {
