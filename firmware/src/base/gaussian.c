@@ -71,13 +71,13 @@ enum mh_status mh_gaussian_settle(struct mh_gaussian *gaussian)
 
 enum mh_status mh_gaussian_predict(struct mh_gaussian *gaussian, const mh_real *F, const mh_real *Q)
 {
-    struct mh_gaussian next;                 /* its P is L until all of W is there */
+    struct mh_gaussian next = *gaussian;     /* its P is L until all of W is there */
     mh_real W[MH_STATES_MAX][MH_STATES_MAX]; /* F L */
     enum mh_status status = factor(gaussian, next.P);
     if (status != MH_OK) {
         return status;
     }
-    const uint8_t n = next.n = gaussian->n;
+    const uint8_t n = next.n;
     for (uint_fast8_t i = 0; i < n; i++) {
         const mh_real *row = next.P;
         next.x[i] = 0;
