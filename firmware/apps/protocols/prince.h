@@ -7,18 +7,13 @@
 static struct mh_prince_config protocol_config;
 static struct mh_prince protocol_state;
 
-/* Targets that begin near the node: each costs 16 bytes of RAM. */
-#ifdef __AVR__
-#define ENTRIES_MAX 1
-#else
-#define ENTRIES_MAX 8
-#endif
-static struct mh_prince_entry entries[ENTRIES_MAX];
+/* Targets that begin near the node: as many as it follows at once. */
+static struct mh_prince_entry entries[MH_TARGETS_MAX];
 
 #define PROTOCOL_ENTRY take_entry
 static enum mh_status take_entry(struct mh_line_fields *fields, uint16_t number)
 {
-    if (number >= ENTRIES_MAX) {
+    if (number >= MH_TARGETS_MAX) {
         return MH_ERR_CAPACITY;
     }
     mh_settings_prince_entry(fields, &entries[number]);
