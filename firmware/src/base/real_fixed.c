@@ -196,7 +196,7 @@ mh_real mh_wide_div(mh_wide a, mh_real b)
 }
 #else
 /* One more digit of *rest / under, for *rest < under. */
-static inline uint32_t divide_further(uint32_t quotient, uint32_t *rest, uint32_t under)
+__attribute__((always_inline)) static inline uint32_t divide_further(uint32_t quotient, uint32_t *rest, uint32_t under)
 {
     const uint32_t lacking = under - *rest;
     quotient += quotient;

@@ -89,12 +89,12 @@ enum mh_status mh_acoustic_advance(struct mh_acoustic_track *track, mh_real acce
 struct mh_vec2 mh_acoustic_velocity(const struct mh_acoustic_track *track)
 {
     struct mh_vec2 velocity = {track->filter.x[2], track->filter.x[3]};
-    const mh_real speed = mh_vec2_length(velocity);
+    const mh_wide square = mh_vec2_square(velocity);
     mh_real scale = MH_REAL(1.0f);
-    if (!track->moving || speed < MH_ACOUSTIC_SLOWEST_MPS) {
+    if (!track->moving || square < mh_wide_mul(MH_ACOUSTIC_SLOWEST_MPS, MH_ACOUSTIC_SLOWEST_MPS)) {
         scale = 0;
-    } else if (speed > MH_ACOUSTIC_FASTEST_MPS) {
-        scale = mh_div(MH_ACOUSTIC_FASTEST_MPS, speed);
+    } else if (square > mh_wide_mul(MH_ACOUSTIC_FASTEST_MPS, MH_ACOUSTIC_FASTEST_MPS)) {
+        scale = mh_div(MH_ACOUSTIC_FASTEST_MPS, mh_wide_sqrt(square));
     }
     velocity.x = mh_mul(velocity.x, scale);
     velocity.y = mh_mul(velocity.y, scale);
