@@ -1,11 +1,11 @@
 #include "motehound/fusion.h"
 
-#if MH_REAL_FIXED
-
 #include "kalman_parts.h"
 #include "motehound/scaled_fixed.h"
 
 #include <string.h>
+
+#if MH_REAL_FIXED
 
 /* P^-1 = sum w_i P_i^-1 without an inverse: one estimate is the prior, with P_i / w_i, and every other is a measurement of all states with its P_i / w_i.
  * With P_i = U D U' these are the scalars U^-1 x_i of independent noises D / w_i, which the Kalman filter takes one by one. */
