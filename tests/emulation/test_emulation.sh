@@ -95,6 +95,19 @@ if [ ${#missing[@]} -eq 0 ]; then
         refused 'more than its image has room for: tracker.separation joint' "$MOTEHOUND" run "${han[@]}" --set tracker.separation=joint --out no --emulate 590=atmega128
     else
         same han 597=atmega128,558=atmega128,555=cortex-m0,601=cortex-m0 "${han[@]}" # likewise
+        # a head with 50 particles leaves 512 of 4,096 bytes; here the neighbours are more than it keeps
+        crowd=(zhou_real --set source.duration_s=80 --set protocol.members=6 --set tracker.name=pftl)
+        accepted "$MOTEHOUND" run "${crowd[@]}" --out crowd
+        heads=$(python3 -c "
+import csv
+heads = dict.fromkeys(row['head'] for row in csv.DictReader(open('crowd/track.csv')))
+print(','.join(f'{head}=atmega128' for head in list(heads)[:10]))")
+        accepted "$MOTEHOUND" run "${crowd[@]}" --out on_crowd --emulate "$heads"
+        python3 -c "
+import json, sys
+free = [board['ram_free_b'] for board in json.load(open('on_crowd/summary.json'))['boards']]
+print(free)
+sys.exit(len(free) != 10 or min(free) < 512)" >free.txt || complain "bytes of RAM never used by heads with 50 particles, expected 512: $(cat free.txt)"
     fi
 elif [ -n "$ALL_BOARDS" ]; then
     complain "${missing[*]}"

@@ -67,11 +67,10 @@ bool mh_election_asks_all(const struct mh_election_config *config, size_t answer
 
 /* Where the target is and goes: relative to `origin`, in metres. */
 struct way {
-    struct mh_place origin;
+    const struct mh_place *origin;
     struct mh_vec2 start, step; /* step: of one interval from `start` */
     mh_real step_length;
     mh_real sensing;
-    uint32_t sensing_mm, radio_mm;
     uint8_t horizon;
 };
 
@@ -80,14 +79,12 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
                                const struct mh_vec2 *velocity)
 {
     const mh_real interval_s = mh_real_from_ratio((int32_t)config->interval, (int32_t)MH_TICKS_PER_S);
-    way->origin = *origin;
+    way->origin = origin;
     way->start = *start;
     way->step.x = mh_mul(velocity->x, interval_s);
     way->step.y = mh_mul(velocity->y, interval_s);
     way->step_length = mh_vec2_length(way->step);
     way->sensing = config->sensing_range_m;
-    way->sensing_mm = millimetres(config->sensing_range_m);
-    way->radio_mm = millimetres(config->radio_range_m);
     if (!mh_vec2_finite(*position) || !mh_vec2_finite(way->start) || !mh_finite(way->step_length)) {
         return MH_ERR_NOT_FINITE;
     }
@@ -106,7 +103,7 @@ static enum mh_status make_way(struct way *way, const struct mh_election_config 
 /* `place`, as a vector from where the target is expected after `intervals`. */
 static struct mh_vec2 from_prediction(const struct way *way, mh_real intervals, const struct mh_place *place)
 {
-    return mh_vec2_between(mh_vec2_along(way->start, intervals, way->step), mh_place_relative(place, &way->origin));
+    return mh_vec2_between(mh_vec2_along(way->start, intervals, way->step), mh_place_relative(place, way->origin));
 }
 
 static bool covers(const struct way *way, mh_real intervals, const struct mh_place *place)
@@ -203,9 +200,9 @@ static void choose_ahead(const struct mh_election_config *config, const struct w
     cluster->count = 0;
     for (size_t i = 0; i < count; i++) {
         const struct mh_candidate *candidate = &candidates[i];
-        const bool near = config->rule == MH_ELECTION_SACX
-                              ? mh_place_within(&candidate->place, &cluster->head.place, way->radio_mm)
-                              : covers(way, MH_REAL(1.0f), &candidate->place);
+        const bool near = config->rule == MH_ELECTION_SACX ? mh_place_within(&candidate->place, &cluster->head.place,
+                                                                             millimetres(config->radio_range_m))
+                                                           : covers(way, MH_REAL(1.0f), &candidate->place);
         if (candidate->id == cluster->head.id || !near) {
             continue;
         }
@@ -325,7 +322,7 @@ static bool due_ahead(const struct mh_election_config *config, const struct way 
 /* rho: how well the candidate's place suits a head: 2, near the present head and in the sector ahead; 1, near it; 0. */
 static uint8_t suits(const struct way *way, const struct mh_candidate *candidate, const struct mh_place *head)
 {
-    if (!mh_place_within(&candidate->place, head, way->sensing_mm)) {
+    if (!mh_place_within(&candidate->place, head, millimetres(way->sensing))) {
         return 0;
     }
     const struct mh_vec2 d = from_prediction(way, 0, &candidate->place);
