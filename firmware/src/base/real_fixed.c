@@ -14,7 +14,7 @@ static inline int32_t multiply(int32_t a, int32_t b, uint32_t *low)
     *low = (uint32_t)wide;
     return (int32_t)(wide >> 32);
 }
-#elif defined __AVR__
+#elif defined __AVR_HAVE_MUL__
 /* Column by column: one of at most four products of bytes and what there was of it fits three bytes. */
 #define TIMES(i, j, first, second, third)                                                                              \
     "mul %" i "[a], %" j "[b]\n\tadd " first ", r0\n\tadc " second ", r1\n\tadc " third ", %[zero]\n\t"
@@ -61,7 +61,7 @@ static inline int32_t multiply(int32_t a, int32_t b, uint32_t *low)
 }
 #endif
 
-#ifdef __AVR__
+#ifdef __AVR_HAVE_MUL__
 mh_real mh_mul(mh_real a, mh_real b)
 {
     uint32_t low = MH_REAL_ONE / 2;

@@ -26,7 +26,7 @@ enum mh_status mh_particles_init(struct mh_particles *particles, uint16_t count,
 
 /* Products of 16 bits: of numbers that are not negative, the upper half of them, of a number that may be negative with one that is not, of two that may, and
  * squares. An AVR's compiler calls a function for each, which takes twice as long. */
-#ifdef __AVR__
+#ifdef __AVR_HAVE_MUL__
 static inline uint32_t wide(uint16_t a, uint16_t b) __attribute__((always_inline));
 static inline uint32_t wide(uint16_t a, uint16_t b)
 {
