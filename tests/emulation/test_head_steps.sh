@@ -12,7 +12,7 @@ for board in cortex-m4f cortex-m33; do
     elif [ -n "$ALL_BOARDS" ]; then
         complain "no qemu-system-arm or no images of $board"
     else
-        echo "skipped: $board"
+        echo "skipped: no image of $board, or no qemu-system-arm"
     fi
 done
 export MOTEHOUND_IMAGES=$PWD/images
