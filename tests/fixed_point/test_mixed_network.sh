@@ -34,7 +34,10 @@ follows() {
 differs() {
     "$2" worker --bus "$bus" 2>/dev/null &
     local worker=$!
-    refused "^worker .*, process [0-9]+ computes in .*, expected $3 like this run; --mixed lets it join" "$1" run luo_exp1 --set tracker.name=luo --out no --bus "$bus" --workers 1 --join 1
+    # without a worker of its own it always says that it waits, else only where that one joins first
+    refused "^worker .*, process [0-9]+ computes in .*, expected $3 like this run; --mixed lets it join" \
+        sh -c '"$@" >told.txt' sh "$1" run luo_exp1 --set tracker.name=luo --out no --bus "$bus" --join 1
+    [ "$(cat told.txt)" = 'waiting for 1 worker to join: motehound worker --bus URL' ] || complain "told: $(cat told.txt)"
     nothing no
     kill -INT $worker
     wait $worker
